@@ -177,7 +177,7 @@ Verdict at_looks(const ClaimSpec& claim, Claim stated, const ClaimSides& sides,
   std::erase_if(begun, [&](std::uint64_t seed) { return std::ranges::count(seeds, seed) > 0; });
   if (begun.empty()) return verdict;
   const Verdict all = decided_by(claim, stated, sides.runs[0], sides.runs[1]);
-  add_note(verdict.note, fmt::format("an unplanned look, with {} more than planned, gives: {}",
+  add_note(verdict.note, fmt::format("an unplanned look, using {} more than planned, gives: {}",
                                      counted(begun.size(), "seed"), numbers_of(all)));
   return verdict;
 }

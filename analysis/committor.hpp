@@ -23,7 +23,7 @@ inline constexpr std::int32_t followed_bins[] = {3, 5, 8, 13, 21};
 /// Number of cycles for which the grains of descendants are remembered. [choice]
 inline constexpr std::size_t remembered_cycles = 3;
 
-/// Labels of the crystallites to follow: in each size bin the one with the lowest grain id.
+/// Labels of the crystallites to follow: in each size bin, the one that has the lowest grain id.
 std::vector<std::int32_t> followed_in(const CrystalliteMap& start);
 
 /// The followed crystallite in one clone.
@@ -53,8 +53,8 @@ struct Ending {
   bool revived = false;  ///< a descendant reached `grown_size` after the crystallite was gone
 };
 
-/// The first event decides: a descendant has `grown_size` grains (grown), or no descendant exists
-/// for `cycles_without` consecutive cycles (gone). If neither occurs, Followed::merged decides.
+/// Grown if a descendant has `grown_size` grains, gone if `cycles_without` consecutive cycles have
+/// no descendant. The earlier of the two decides. If neither occurs, Followed::merged decides.
 Ending ending(const Followed& crystallite, std::size_t cycles_without);
 
 }  // namespace shearcell

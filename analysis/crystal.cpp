@@ -79,8 +79,8 @@ std::vector<std::int32_t> unpacked(const json& result, const char* key) {
   return values;
 }
 
-/// Throws AnalysisError unless grain ids ascend, each label belongs to a crystallite, sizes equal
-/// the counts of grains, no crystallite is empty, and centres and the cell are finite.
+/// Throws AnalysisError unless grain ids ascend, each label belongs to a crystallite, each size
+/// is the number of grains with this label and is not 0, and centres and the cell are finite.
 void check(const CrystalliteMap& map) {
   if (map.label.size() != map.grain.size()) refuse("labels and grains differ in number");
   if (map.centre.size() != map.size.size()) refuse("centres and sizes differ in number");
@@ -92,7 +92,7 @@ void check(const CrystalliteMap& map) {
     if (map.label[k] < 0 || label >= count.size()) refuse("a label has no crystallite");
     ++count[label];
   }
-  if (count != map.size) refuse("sizes differ from the counts of grains");
+  if (count != map.size) refuse("a size is not the number of grains with its label");
   if (std::ranges::count(count, 0) > 0) refuse("a crystallite has no grains");
   const bool finite =
       std::ranges::all_of(map.centre, [](const auto& c) { return c.allFinite(); }) &&

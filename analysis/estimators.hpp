@@ -98,8 +98,8 @@ Verdict compare_waits(const Claim& claim, const std::string& event,
 /// The bootstrap draws packings, each with all its items.
 std::optional<Estimate> share(std::span<const std::vector<double>> packings);
 
-/// The number of a run. For a run that ended before the event, the result is the lower bound
-/// RunValue::above and is censored. NaN if neither the number nor the bound is known.
+/// Converts the number of a run. If the run ended before the event, the result is censored, and its
+/// number is the lower bound RunValue::above. NaN if neither the number nor the bound is known.
 CensoredValue censored_value(const RunValue& value);
 
 /// Averages `values` (one per run) over the runs of each packing. A mean is censored if one of the

@@ -48,8 +48,8 @@ struct Frame {
   /// Planned runs that have not ended. Only their variants, seeds, names and parameters are used.
   std::vector<FrameRun> pending = {};
   /// Seeds of the experiments at this scale, in order. If empty, each verdict uses all runs in the
-  /// frame. A planned look (interim analysis) n in `looks` uses the runs of the first n seeds with
-  /// finished or planned runs.
+  /// frame. A number n in `looks` plans a look (interim analysis) at the runs of the first n seeds
+  /// that have finished or planned runs.
   std::vector<std::uint64_t> seeds = {};
   std::vector<std::size_t> looks = {};
 
@@ -115,7 +115,7 @@ const CheckpointMeasures* checkpoint_at(const FrameRun& run, double cycle);
 /// `max` or both. The relative tolerance of numbers is 1e-6, since a manifest may round them.
 bool has_parameters(const FrameRun& run, const nlohmann::json& where);
 /// The runs whose parameters match `where`. Runs that `run --engine` added are left out if
-/// the remaining runs belong to only one variant.
+/// the other matching runs belong to only one variant.
 std::vector<const FrameRun*> runs_with(const nlohmann::json& where, std::span<const FrameRun> runs);
 
 /// Whether a value matches `wanted`, which is a value, a list of values or a range.
@@ -153,10 +153,10 @@ std::vector<std::string> varied_keys(std::span<const nlohmann::json> variants,
 std::vector<std::string> varied_keys(std::span<const FrameRun> runs, std::string_view first = "");
 
 /// A plot draws one curve for each combination of values of `keys`. If a curve would average over
-/// the values of another swept key, returns this key, else "".
+/// the values of another swept key, returns this key, else "". Ignores keys that change only
+/// together with `keys`.
 std::string averaged_key(std::span<const FrameRun> runs, const std::vector<std::string>& keys);
-/// Throws UsageError if averaged_key() finds a key. Ignores keys that change together with `keys`.
-/// The message ends with `remedy`.
+/// Throws UsageError if averaged_key() returns a key. The message ends with `remedy`.
 void require_told_apart(const std::string& figure, std::span<const FrameRun> runs,
                         const std::vector<std::string>& keys, const std::string& remedy);
 

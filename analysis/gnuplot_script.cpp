@@ -110,7 +110,7 @@ struct Layout {
   int width = column_width;
   int height = chart_height;
   std::size_t columns = 1;
-  std::size_t longest = 0;  ///< letters of the longest title in the legend
+  std::size_t longest = 0;  ///< number of letters of the longest title in the legend
 };
 
 /// The drawing has the width of two journal columns if the chart is wide, if a title in the legend

@@ -13,7 +13,7 @@
 namespace shearcell {
 namespace {
 
-/// Probability that the standard normal deviates of all looks lie between -limit and limit.
+/// Probability that the standard normal test statistic lies in [-limit, limit] at every look.
 double probability_within(double limit, std::span<const std::size_t> looks) {
   const auto share_of_next = [&](std::size_t k) {
     return static_cast<double>(looks[k - 1]) / static_cast<double>(looks[k]);

@@ -21,8 +21,8 @@ struct Mechanics {
   Eigen::Matrix3d stress;  ///< from contacts [k/d]
   double pressure = 0;     ///< trace / 3 [k/d]
   double deviator = 0;     ///< sqrt(s:s / 2), s the deviator [k/d]
-  /// Kinetic part of the pressure [m/(d s^2)], from velocities minus the mean flow: the mean
-  /// velocity and a profile of v_x that is linear in y.
+  /// Kinetic part of the pressure [m/(d s^2)], from velocities relative to the mean
+  /// flow, which is the mean velocity plus a v_x that is linear in y.
   double kinetic_pressure = 0;
   double coordination = 0;  ///< contacts per interior grain
   /// Percentage of interior grains that are rattlers. A rattler has fewer than four contacts with

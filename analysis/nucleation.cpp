@@ -137,7 +137,7 @@ bool is_bounded(const Shares& amplitudes) {
   return larger && smaller;
 }
 
-/// Variance of the score between packings, divided by its value for independent runs; at least 1.
+/// Variance of the packings' scores, divided by the variance for independent runs; at least 1.
 double variance_between_packings(const Likelihood& at) {
   double squares = 0;
   for (const auto& [packing, score] : at.score_of) squares += score * score;

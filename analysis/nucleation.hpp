@@ -27,8 +27,8 @@ inline constexpr double nominal_height = 1.675;  ///< [L], supplement E
 enum class Seen { always, first };
 
 /// Positions along `axis` of the centres of mass of all crystallites of 15 to 25 grains in a run. x
-/// is 0 at 1 d outside the left plane, and its unit is width + 2 d. y is 0 at the bottom plane, and
-/// its unit is the height. Positions are in [0, 1], but `y_nominal` can exceed 1. [choice]
+/// starts 1 d outside the left plane and is divided by width + 2 d. y starts at the bottom plane
+/// and is divided by the height. Positions are in [0, 1], but `y_nominal` can exceed 1. [choice]
 std::vector<double> nucleus_places(const FrameRun& run, CellAxis axis, Seen seen = Seen::always);
 
 struct DensityBin {

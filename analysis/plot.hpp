@@ -31,7 +31,7 @@ void require_own_files(const Table& table, const std::filesystem::path& folder);
 ///
 /// Throws AnalysisError if gnuplot is not installed, fails or writes an incomplete drawing. The
 /// error names the package to install, or repeats gnuplot's message. The script is kept. Older
-/// drawings with this name are deleted, since they show other data.
+/// drawings with this name are deleted, because they do not show this data.
 std::filesystem::path draw_svg(const Table& table, const std::filesystem::path& folder);
 
 /// Writes the drawing as PDF beside the SVG and returns its path. The same SVG gives the same bytes

@@ -125,7 +125,7 @@ std::vector<Selected> select(const PlotSpec& plot, const Frame& frame, std::stri
   const std::string& name = others.front()->name;
   note = fmt::format(
       "Differences from {} with the same packing{}", name.empty() ? words_of(plot.minus) : name,
-      alone == 0 ? "" : fmt::format("; {} of {} runs have none to subtract", alone, all));
+      alone == 0 ? "" : fmt::format("; {} of {} runs have no run to subtract", alone, all));
   return selected;
 }
 
@@ -182,7 +182,7 @@ struct Panel {
   std::vector<Curve> curves = {};
 };
 
-/// Computes the samples of a run. `cycle`: cycle_of(), used if the plot draws only one cycle.
+/// Computes the samples of a run. `cycle` (from cycle_of()) is used if the plot draws one cycle.
 Trace evaluate(const PlotSpec& plot, std::span<const NumberColumn> columns, const NumberColumn& x,
                const Selected& one, double cycle) {
   Trace trace{one.run};
@@ -252,8 +252,8 @@ void average_x(std::vector<Curve>& curves) {
 
 // --- Group ---
 
-/// A variant as a CSV field without quotes, for readers that do not support RFC 4180. The comma is
-/// the only special character in variants of manifests. Variants in other stores may have others.
+/// A variant as a CSV field without quotes, for readers that do not support RFC 4180. A comma
+/// becomes a semicolon, and so does any character that cannot come from a manifest.
 std::string plain_field(std::string variant) {
   const auto odd = [](char c) {
     const auto byte = static_cast<unsigned char>(c);

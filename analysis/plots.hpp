@@ -54,12 +54,12 @@ struct MarkSpec {
 struct PlotSpec {
   std::string name;
   /// A measure of a checkpoint (a number or a curve), a measure of the whole run, or an expression
-  /// of parameters and measures. An expression cannot contain curves or combine both kinds.
+  /// of parameters and measures. An expression cannot contain curves, or both kinds of measures.
   std::string y;
   /// Selects runs by has_parameters(). The key "cycle" selects checkpoints.
   nlohmann::json where = nlohmann::json::object();
-  /// Parameters and their values that select one variant. The plot then shows `y` minus the `y` of
-  /// this variant's run with the same packing at the same cycle. If empty, the plot shows `y`.
+  /// If not empty, these parameter values select one variant. The plot then shows differences: `y`
+  /// minus the `y` of the run of this variant with the same packing, at the same cycle.
   nlohmann::json minus = nlohmann::json::object();
   /// "cycle", a parameter, a measure (of a checkpoint or of the run), or an expression of these. A
   /// measure of the run is averaged over the runs of each variant. Ignored if y is a curve.

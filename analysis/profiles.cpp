@@ -48,7 +48,7 @@ double crystalline_percent(const GrainMeasures& grains, double least_phi_local, 
 
 /// Curves with one entry per layer. Layers are one diameter thick, from the plane of the bottom
 /// wall to the plane of the top wall. A grain counts in the layer of its centre if it is at least
-/// 1.5 d from the surfaces of the side walls. A layer without grains has NaN.
+/// 1.5 d from the surfaces of the side walls. The value of a layer without grains is NaN.
 json profiles_of(const MeasureInput& input) {
   const Checkpoint& checkpoint = *input.checkpoint;
   const GrainMeasures& grains = input.analysis->grains;
@@ -162,7 +162,7 @@ std::vector<Provider> profile_providers() {
                     {"pressure_profile_Pa", "Pa", "mean normal stress of a layer, from contacts",
                      curve, "height_d", "d"},
                     {"coordination_profile", "1",
-                     "mean contacts of a grain in a layer, with wall grains", curve, "height_d",
+                     "contacts per grain in a layer, including wall grains", curve, "height_d",
                      "d"},
                     {"crystalline_profile_percent", "%", "crystalline grains of a layer", curve,
                      "height_d", "d"}},

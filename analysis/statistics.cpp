@@ -44,8 +44,8 @@ std::vector<double> bootstrap_values(std::size_t runs, std::size_t chosen,
   return values;
 }
 
-/// The interval without the fraction `tail` of the values at each end. A selection whose statistic
-/// is NaN counts at the lower end as -infinity and at the upper end as +infinity.
+/// The range of the bootstrap values after removing the fraction `tail` of them at each end. For
+/// the lower end, a missing value (NaN) counts as -infinity; for the upper end, as +infinity.
 Interval percentiles(std::vector<double> values, double tail) {
   const std::size_t missing = bootstrap_selections - values.size();
   values.insert(values.end(), missing, infinite);

@@ -91,7 +91,7 @@ std::string order_of_waits(const Verdict& verdict) {
                        one_side ? factor(near) : times(low), times(one_side ? far : high));
   }
   const double end = std::isfinite(low) ? low : high;
-  if (!std::isfinite(end)) return fmt::format("no bound on the ratio of the cycles ({})", level);
+  if (!std::isfinite(end)) return fmt::format("no bound on the ratio of waiting times ({})", level);
   // If the interval contains 0, its finite end bounds only "earlier" or only "later".
   const bool least = std::isfinite(low) ? low >= 0 : high < 0;
   return fmt::format("the first is at {} {}{} ({})", least ? "least" : "most", times(end),

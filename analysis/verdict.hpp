@@ -71,8 +71,8 @@ struct Verdict {
   Table entered = {};    ///< rows with the numbers that the verdict uses
 };
 
-/// Returns agrees or supported if the interval lies in the range that the claim expects; differs or
-/// refuted if the interval lies wholly outside this range; undecided otherwise.
+/// Returns `agrees` or `supported` if the interval lies inside the range that the claim expects,
+/// and `differs` or `refuted` if all of it lies outside. Otherwise returns `undecided`.
 Ruling ruling_of(const Interval& interval, double margin, Relation claimed);
 
 /// The verdict that follows from the estimate's interval; undecided without an estimate. If the
@@ -87,7 +87,7 @@ Verdict decide(const Claim& claim, std::string quantity, const std::optional<Est
 /// The number of verdicts with each ruling. Rulings that do not occur are left out.
 std::map<Ruling, std::size_t> rulings_of(std::span<const Verdict> verdicts);
 
-/// "1 agrees, 1 refuted"; "" if there are no verdicts.
+/// The rulings in words, such as "1 agrees, 1 refuted"; "" if there are none.
 std::string headline_of(const std::map<Ruling, std::size_t>& rulings);
 
 /// Makes the ruling undecided, unless the claim cannot be decided.

@@ -104,10 +104,10 @@ class Tessellation {
     widen(first_margin_spacings * spacing);
   }
 
-  /// The sphere around a corner of a cell passes through the site of the cell. A cell is correct if
-  /// the spheres around all its corners lie within the margin. Additional images can only make
-  /// cells smaller, so a margin equal to the present reach of the spheres is sufficient. If a
-  /// cell extends to a guard, the reach is far too large, so each pass at most doubles the margin.
+  /// Each corner of a cell is the centre of a sphere through the cell's site. The cell is correct
+  /// if all these spheres lie within the margin. More images can only make cells smaller, so a
+  /// margin as large as the present reach of the spheres is sufficient. If a cell extends to a
+  /// guard, the reach is far too large. So each pass at most doubles the margin.
   VoronoiDiagram measure() {
     while (true) {
       reach_ = 0;

@@ -20,8 +20,8 @@ namespace shearcell {
 namespace HWY_NAMESPACE {
 #if SHEARCELL_HAS_SIMD
 
-// Number of neighbours per lane whose series are computed together, because each operation of one
-// series waits for the previous operation. Four neighbours fit in 32 registers if coefficients are
+// Number of neighbours per lane whose series are computed at once. Within a series, each
+// operation waits for the previous one. Four neighbours fit in 32 registers if coefficients are
 // loaded for each use. With 16 registers, one neighbour at a time is faster (README.md).
 constexpr std::size_t kSlots = HWY_TARGET == HWY_AVX3 ? 4 : 1;
 

@@ -255,7 +255,7 @@ std::vector<std::string> Object::names() const {
   return found;
 }
 
-/// The bytes of a scalar attribute of this data type. An empty `type` accepts every data type.
+/// The bytes of an attribute, which must be a single value of the data type `type` ("": any type).
 Object::Bytes Object::attribute(const std::string& name, std::string_view type,
                                 std::size_t size) const {
   const auto found = attributes_.find(name);

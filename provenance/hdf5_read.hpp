@@ -27,7 +27,7 @@ inline constexpr const char* kFrameTitle = "shearcell checkpoint 1\n";
 /// Version of the layout of /restart.
 inline constexpr std::uint64_t kRestartFormat = 1;
 
-/// The text of the frame, without its final zeros. `sha256`: of all bytes after the frame.
+/// The text in a checkpoint's frame, without padding. `sha256`: the hash of the bytes after it.
 inline std::string frame_text(const std::string& sha256) {
   return kFrameTitle + ("sha256 of all bytes after the first 512: " + sha256 + "\n");
 }
@@ -52,7 +52,7 @@ class Object {
   std::uint64_t count(const std::string& name) const;  ///< 64 bits, unsigned
   std::string text(const std::string& name) const;     ///< at most 4096 bytes
 
-  // All values of a dataset, row by row. `columns` is checked; 0 means a one-dimensional dataset.
+  // All values of a dataset with `columns` columns, row by row. 0: the dataset is one-dimensional.
   std::vector<double> numbers(const std::string& name, std::uint64_t columns) const;  ///< finite
   std::vector<std::uint8_t> bytes(const std::string& name) const;
 

@@ -64,7 +64,7 @@ std::string this_place() {
 }
 
 /// Start time of a process [clock ticks since boot], or 0 for a zombie (ended, but not yet reaped).
-/// Nothing when /proc does not show the process because it has ended or is hidden (hidepid).
+/// Returns nothing when /proc does not show the process: it has ended or is hidden (hidepid).
 std::optional<std::uint64_t> start_of(std::uint64_t pid) {
   std::ifstream file(fmt::format("/proc/{}/stat", pid));
   std::string line;

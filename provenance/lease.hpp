@@ -40,8 +40,8 @@ inline constexpr std::uint64_t kLongestLeaseMs = 60'000;
 
 /// Whether another program may continue the run. A lease lapses when it expires, when
 /// kLongestLeaseMs has passed since its renewal, or when the process of its holder is dead (checked
-/// only for the same boot and namespace). It also lapses when the clock was set back to a time
-/// before the renewal.
+/// only if it ran in the same boot and namespace). It also lapses when the clock was set back to a
+/// time before the renewal.
 bool lapsed(const Lease& lease, std::uint64_t now);
 
 /// "host vm, process 1234".

@@ -46,7 +46,7 @@ struct Attempt {
   nlohmann::json host = nlohmann::json::object();
   std::string from_run;                  ///< run that recorded the initial state; "" if no run did
   std::string from_checkpoint;           ///< SHA-256 of the initial state, or ""
-  std::uint64_t bits_version = 0;        ///< core/bits_version.hpp; derived for old events
+  std::uint64_t bits_version = 0;        ///< see core/bits_version.hpp; derived for old events
   std::vector<std::string> checkpoints;  ///< SHA-256 of the recorded checkpoints, in order
 };
 

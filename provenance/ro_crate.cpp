@@ -168,7 +168,7 @@ json add_attempt(Graph& graph, const CrateFacts& facts, const RunLineage& stage,
                        : attempt.outcome == AttemptOutcome::running ? "Active"
                                                                     : "Failed";
   const std::string error =
-      lost ? "ended without a record (a kill or a power cut); a later attempt continued"
+      lost ? "ended without a record, as after a power cut; a later attempt continued the run"
            : attempt.why;
   json action = {
       {"@id", fmt::format("#attempt-{}-{}", stage.stage.id, a + 1)},

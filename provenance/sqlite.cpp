@@ -161,7 +161,7 @@ void Database::fail(int code, std::string_view doing) const {
           name_));
     case SQLITE_TOOBIG:
       throw StoreDamaged(fmt::format(
-          "{}: a value in the database is larger than {} MiB, the most that this program writes "
+          "{}: a value in the database exceeds {} MiB, the largest size that this program writes "
           "or reads; restore the database from a backup",
           name_, StoreLimits::value_bytes >> 20));
     case SQLITE_CORRUPT:

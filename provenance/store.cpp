@@ -39,7 +39,7 @@ std::string other_file_in(const std::filesystem::path& folder) {
 std::filesystem::path prepare_folder(std::filesystem::path folder, Access access) {
   namespace fs = std::filesystem;
   const std::string name = folder.string();
-  sqlite::full_name(folder / kLogFile);  // throws before anything is made if the path is too long
+  sqlite::full_name(folder / kLogFile);  // throws if the path is too long, before files are made
   if (fs::exists(folder) && !fs::is_directory(folder)) {
     throw UsageError(
         fmt::format("{}: a store is a folder, but this is a file; choose another path", name));
@@ -84,8 +84,8 @@ void require_objects(const std::filesystem::path& folder, const sqlite::Database
   if (std::filesystem::exists(objects) && !std::filesystem::is_empty(objects, unreadable)) return;
   if (unreadable) return;
   throw StoreDamaged(fmt::format(
-      "{}: the log lists checkpoints, but this folder is missing or empty; mount it, or copy it "
-      "from where the store was, or choose another store with --store",
+      "{}: the log lists checkpoints, but this folder is missing or empty; mount it, copy it "
+      "from the original store, or choose another store with --store",
       objects.string()));
 }
 

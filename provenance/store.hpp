@@ -148,8 +148,8 @@ class Store {
       const std::string& id, std::vector<std::string>* damage = nullptr,
       std::uint64_t before_step = UINT64_MAX);
 
-  /// Appends an event that changes no run: FigureGenerated to "figure/drag/desk/S2", ReplayVerified
-  /// or ReplayDiverged to the stream of the run, CampaignSubmitted or JobQueued to kSubmissions.
+  /// Appends an event that changes no run. Streams: "figure/drag/desk/S2" for FigureGenerated, the
+  /// run's for ReplayVerified and ReplayDiverged, kSubmissions for CampaignSubmitted and JobQueued.
   /// Throws ConcurrencyConflict if `seen` is given and the stream does not have `seen` events.
   void record(std::string_view stream, const NewEvent& event,
               std::optional<std::uint64_t> seen = std::nullopt);

@@ -75,7 +75,7 @@ void check_extends(const EventLog& log, const Head& earlier, VerifyReport& repor
   const std::string event = event_name(earlier.seq);
   if (report.head.seq < earlier.seq) {
     return add_error(report, event,
-                     fmt::format("the log was cut off: it ends at event {}, but the given head is "
+                     fmt::format("the log was cut off: it ends at event {}, before the given head, "
                                  "{}; restore the log from a backup",
                                  report.head.seq, event));
   }

@@ -36,7 +36,7 @@ Verdict decide_spread(const ClaimSpec& claim, const Claim& stated, RunGroup runs
   }
   std::string note = runs.empty()
                          ? std::string(no_group)
-                         : fmt::format("{} independent values from {} runs, in {}", with_number,
+                         : fmt::format("{} independent values from {} runs of {}", with_number,
                                        runs.size(), counted(groups.size(), "variant"));
   std::optional<Estimate> estimate;
   if (const auto found = variance_between(groups, stated.level)) {

@@ -45,7 +45,7 @@ void speed(bench::SpeedOptions& options, Context& context) {
 void add_speed(CLI::App& bench, Context& context) {
   const auto [command, options] = add_command(
       bench, context, "speed",
-      "Measure the speed in a sheared cell, and the share of time of each part of a step", speed);
+      "Measure how fast a sheared cell runs, and the time share of each part of a step", speed);
   add_number(*command, "--size", options->sizes, "Numbers of grains", "N", 1, 100'000'000)
       ->capture_default_str();
   add_number(*command, "--threads", options->threads, "Numbers of threads in one run", "T", 1, 1024)

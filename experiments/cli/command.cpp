@@ -58,7 +58,7 @@ std::string unfit_output(const std::string& path) {
   namespace fs = std::filesystem;
   if (path.empty()) return "is empty; give a file or folder";
   std::error_code ignored;
-  // No output into a store's `objects` folder: `verify` would report it as a leftover of a crash.
+  // Output in a store's `objects` is refused: `verify` would call it a leftover of a crash.
   for (fs::path at = fs::absolute(path).lexically_normal(); at.has_relative_path();
        at = at.parent_path()) {
     const fs::path log = at.parent_path() / "store.sqlite";
@@ -127,8 +127,8 @@ CLI::Option* add_each(CLI::App& command, const char* name, auto& values, const c
 void add_variant_option(CLI::App& command, std::vector<std::string>& variants) {
   add_each(
       command, "--variant", variants,
-      "Only runs with this swept value, such as fluid=cell, or with this label from `status`. If "
-      "several values of one key are given, one must match. If several keys are given, all must",
+      "Only runs with this swept value, such as fluid=cell, or with this label, as `status` prints "
+      "it. If several values are given, a run must have one of the values of each key",
       "KEY=V");
 }
 
@@ -266,8 +266,8 @@ void order_by_start(std::vector<Manifest>& manifests, Context& context) {
   }
 }
 
-// Warns if figures will omit runs of the store after this plan is run, since figures show only
-// the runs of the newest manifest of each experiment and scale.
+// Figures show only the runs of the newest manifest of each experiment and scale. Warns if figures
+// will therefore omit runs of the store after this plan is run.
 void warn_of_other_version(const Plan& plan, const std::vector<Stage>& known, Context& context) {
   const Manifest& manifest = plan.manifest;
   std::set<std::string> planned;

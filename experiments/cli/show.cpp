@@ -304,7 +304,7 @@ void print_input(const FigureInput& input, const RunLineage& run, bool list, Mak
   for (const std::string& given : describe(input.overrides)) say("", "{}", given);
   say("  cycles", "{}: {}, {}", to_text(input.states.cycles),
       counted(input.checkpoints.size(), "checkpoint"),
-      input.fault.empty() ? "with states as in the figure's record" : input.fault);
+      input.fault.empty() ? "whose states match the figure's record" : input.fault);
   say("  last state", "{}", input.states.state_hash);
   print_stage(run, input.checkpoints, list, makers);
 }

@@ -64,9 +64,9 @@ std::string describe(const QueuedTask& task) {
   return fmt::format("{} {}{}{}", task.job, task.state, more.empty() ? "" : " ", more);
 }
 
-/// Returns state and cycle of the run, as stored or as its cluster task reports them. The report is
-/// used unless its cycle is less than the stored cycle. If the program that computed the run was
-/// killed, the state is `interrupted`.
+/// Returns state and cycle of the run: those that its cluster task reports, or the stored ones if
+/// they are newer. A stored state `running` becomes `interrupted` if the process that computed the
+/// run was killed.
 std::pair<StageState, double> progress_of(const Stage& stage, const View& view) {
   const QueuedRun* queued = view.queued(stage);
   const bool reported =

@@ -69,8 +69,8 @@ void print(const Result& result, const Context& context) {
   fmt::print("{}", result.text);
   if (proposal.left_out > 0) {
     fmt::print(
-        "left out: {}, because work on their packings is already queued or running; see "
-        "`shearcell status`\n",
+        "left out: {}, because a queued or running task works on the same packing; see `shearcell "
+        "status`\n",
         counted(proposal.left_out, "run"));
   } else if (proposal.shares.empty()) {
     fmt::print("Nothing to do: all runs are done\n");

@@ -165,7 +165,7 @@ void print(const VerifyReport& report, const MeasureCheck& measures) {
                measures.cached);
   }
   if (measures.absent + measures.not_covered > 0) {
-    print_text("measures of pruned checkpoints: {} missing; the log has no hashes for {}\n",
+    print_text("measures of pruned checkpoints: {} missing; {} without hashes in the log\n",
                measures.absent, counted(measures.not_covered, "checkpoint"));
   }
   if (report.ok()) {

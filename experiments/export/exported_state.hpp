@@ -16,7 +16,7 @@
 
 namespace shearcell {
 
-/// A measure of each particle.
+/// A measure that has one value for each particle.
 struct ExportedColumn {
   std::string name;
   bool whole = false;  ///< whether the values are whole numbers

@@ -87,9 +87,9 @@ struct CollectedRuns : Frame {
 };
 
 /// Returns the newest_runs() of the figure's experiment that match `selection`, at the scale of the
-/// run that was declared last. Each run has its checkpoints up to end_for(). In a figure of all
-/// experiments, a run that belongs to several experiments occurs once for each experiment. Throws
-/// NotFound if no run is selected.
+/// run that was declared last. Each run has its checkpoints up to the cycle end_for(). In a figure
+/// of all experiments, a run that belongs to several experiments occurs once for each experiment.
+/// Throws NotFound if no run is selected.
 CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
                            const RunSelection& selection, const MeasureOptions& measuring = {});
 

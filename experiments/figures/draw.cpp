@@ -61,9 +61,9 @@ nlohmann::json inputs_of(const Store& store, const ComputedFigure& figure,
   return list;
 }
 
-/// If the figure's plots come from this program and not from the manifest, returns a text with the
-/// program's version. For example, older manifests only name the figure. Returns "" if the manifest
-/// defines the plots or if C++ computes the figure.
+/// Names the version of this program if the program defines the figure's plots, because the
+/// manifest does not. (Older manifests only list the name of the figure.) Returns "" if the
+/// manifest defines the plots or if C++ computes the figure.
 std::string plots_of(const WantedFigure& wanted, const std::vector<ReadManifest>& manifests) {
   const std::string& name = wanted.figure.name;
   const auto manifest = std::ranges::find(manifests, wanted.experiment, &ReadManifest::experiment);

@@ -80,7 +80,7 @@ std::vector<Column> names() {
 }
 
 std::vector<Column> which_checkpoint() {
-  return {of_checkpoint("cycle", "cycles since the shear began, or steps of a stiffening",
+  return {of_checkpoint("cycle", "cycles since the shear began; for a stiffening, its steps",
                         [](const CheckpointRecord& c) { return c.cycle; }),
           of_checkpoint("checkpoint", "SHA-256 of the checkpoint's file",
                         [](const CheckpointRecord& c) { return c.sha256; })};

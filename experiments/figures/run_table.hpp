@@ -37,7 +37,7 @@ RunTable run_table(const Store& store, const RunSelection& selection, RowPer per
 RunTable curve_table(const Store& store, const RunSelection& selection, const Measure& measure,
                      const MeasureOptions& options);
 
-/// Names of all providers that have columns in the table, without the simulating providers. The
+/// Names of all providers that have columns in the table, except the providers that simulate. The
 /// first name is "scalars".
 std::vector<std::string> table_providers();
 std::vector<std::string> simulating_providers();

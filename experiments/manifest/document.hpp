@@ -48,8 +48,8 @@ void check_characters(std::string_view text, std::string_view file, std::string_
 /// bytes that are not UTF-8, noncharacters, invisible characters, and blanks other than the space.
 std::string printable(std::string_view text, std::size_t longest = 60);
 
-/// Makes a text safe to print in a terminal. Escapes less than printable(): blanks and invisible
-/// characters stay, since some scripts need them.
+/// Makes a text safe to print in a terminal. Unlike printable(), keeps blanks and
+/// invisible characters, because some writing systems need them.
 std::string without_controls(std::string_view text);
 
 /// Like without_controls(), but keeps line feeds.

@@ -55,8 +55,8 @@ struct UnreadableRecord : std::runtime_error {
 StageInputs read_stage(const nlohmann::json& resolved);
 
 /// The parameters that affect the stage. A parameter that the record omits has the value
-/// Identity::omitted_at. Parameters that every record holds with the same value
-/// (Identity::recorded_as) are left out, since the run may have used another one. If the record is
+/// Identity::omitted_at. A parameter with Identity::recorded_as is left out: all records
+/// hold the same value of it, which may differ from the value that the run used. If the record is
 /// damaged, the result has only the parameters in the record.
 nlohmann::json effective_parameters(const nlohmann::json& resolved);
 

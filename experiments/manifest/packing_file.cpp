@@ -34,8 +34,8 @@ enum Quantity { kX, kY, kZ, kVx, kVy, kVz, kDiameter, kId, kWall, kQuantities };
 constexpr const char* kNamesInMessages[] = {"x",  "y",        "z",  "vx",  "vy",
                                             "vz", "diameter", "id", "type"};
 
-/// The meaning of a column's name. If several columns can give a quantity, the columns whose
-/// meaning has the lowest rank are read.
+/// What a column with one of these names contains. If several columns could contain the same
+/// quantity, those with the lowest rank are read.
 struct Meaning {
   string_view names;        ///< in lower case; if `count` is 1, the k-th is `first` + k - 1
   int first = kQuantities;  ///< first quantity of the column; kQuantities: unknown
@@ -254,8 +254,8 @@ class PackingReader {
     return all;
   }
 
-  /// Reads the rest of the file, one grain in each line. `count`: the number of grains according to
-  /// the line that contains `stated_in`, if the file has such a line.
+  /// Reads the rest of the file, one grain in each line. `count` is the number of grains that the
+  /// file announces, if it does, in the line that contains `stated_in`.
   void read_rows(std::optional<std::uint64_t> count = {}, string_view stated_in = {}) {
     while (next_line()) {
       if (!trimmed(line_).empty()) grains_.rows.push_back(line_);
@@ -265,13 +265,13 @@ class PackingReader {
     const int at = place(stated_in).line;
     if (found < *count) {
       refuse_line(line_,
-                  fmt::format("the file ends after {} of the {} grains that line {} states", found,
+                  fmt::format("the file ends after {} of the {} grains announced in line {}", found,
                               *count, at),
                   "Use a complete file, or correct the number of grains.");
     }
     refuse_line(
         grains_.rows[*count],
-        fmt::format("the file continues after the {} grains that line {} states", *count, at),
+        fmt::format("the file continues after the {} grains announced in line {}", *count, at),
         "Keep one frame, or correct the number of grains.");
   }
 
@@ -601,9 +601,9 @@ class PackingReader {
     }
     const Eigen::Vector3d size = box_->planes.sizes();
     if (box_->lean > 1e-9 * size.cwiseAbs().maxCoeff()) {
-      refuse_line(
-          box_->line, fmt::format("the box is not orthogonal: an edge leans by {:.3g}", box_->lean),
-          "Use a rectangular box. Write the state of a sheared cell at the end of a cycle.");
+      refuse_line(box_->line,
+                  fmt::format("the box is not orthogonal: an edge leans by {:.3g}", box_->lean),
+                  "Use a rectangular box. A sheared cell is rectangular at the end of a cycle.");
     }
     for (const int k : {0, 1, 2}) {
       if (size[k] > 0) continue;
@@ -875,7 +875,7 @@ class PackingReader {
     Cell cell;
     cell.width = size.x();
     cell.top = size.y();
-    cell.depth = box_ ? size.z() : size.z() + kShallowestCell;  // without a box: keeps images apart
+    cell.depth = box_ ? size.z() : size.z() + kShallowestCell;  // without a box: no images touch
     const Eigen::Matrix3Xd sites = position.colwise() - space.min();
     for_each_pair(cell, wall_pose(cell, 0, 0), sites, 1 - facts_.largest_overlap,
                   [&](std::int32_t i, std::int32_t j, const Eigen::Vector3d& r) {

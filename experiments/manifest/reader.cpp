@@ -263,9 +263,9 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
   visit(plot.ylabel, {.name = "ylabel", .doc = "see `xlabel`", .longest = kLongestLabel});
   visit(plot.series,
         {.name = "series",
-         .doc = "styles of curves, in drawing order: label, colour (blue, vermilion, green, "
-                "purple, orange, sky, black or `\"#rrggbb\"`), marker. Each key is a value of "
-                "`by`, `\"KEY=VALUE\"` as in `labels`, or the name of one of several `y`",
+         .doc = "styles of curves, in drawing order. A style has label, colour (blue, vermilion, "
+                "green, purple, orange, sky, black or `\"#rrggbb\"`) and marker. Its key is a "
+                "value of `by`, `\"KEY=VALUE\"` as in `labels`, or the name of a measure in `y`",
          .example = "{still: {label: $v_f = 0$, colour: blue, marker: open_circle}}"});
   visit(plot.published,
         {.name = "published",
@@ -648,7 +648,7 @@ struct Reader {
       if (std::ranges::find(about.terms, name) == about.terms.end()) {
         reject_value(
             in,
-            with_nearest(fmt::format("uses {}, which is not the name of a number", printable(name)),
+            with_nearest(fmt::format("uses {}, which is not a numeric quantity", printable(name)),
                          name, about.terms),
             "`shearcell manual` lists measures and parameters.");
         return false;
@@ -663,7 +663,7 @@ struct Reader {
     return !(of_run && of_checkpoint);
   }
 
-  // Adds a parameter and its value, list of values or range to `where`.
+  // Adds to `where` a parameter with its value, its list of values or its range.
   void read_where(const Node& in, json& where) {
     static const Field experiment = {.name = "experiment", .longest = kLongestName};
     if (in.key == experiment.name) {
@@ -795,8 +795,8 @@ struct Reader {
     }
   }
 
-  // Reads the two sides of a claim, the first and the last cycle, or the ends of a window. A key
-  // without an example (`at_cycle`) has one value, which is used as first and as last cycle.
+  // Reads a pair: the sides of a claim, the first and last cycle, or the ends of a window. A key
+  // without an example (`at_cycle`) has one value, which becomes both the first and the last cycle.
   template <class T>
   void read(const Node& in, const Field& about, std::array<T, 2>& both) {
     constexpr bool sides = std::is_same_v<T, json>, whole = std::is_integral_v<T>;
@@ -1309,7 +1309,7 @@ struct Reader {
       if (plot.by.empty()) {
         where[""] = part.key;
         reject_key(part, "names no parameter",
-                   "Write `\"KEY=VALUE\"`, set `by` to the parameter, or write a name of `y`.");
+                   "Write `\"KEY=VALUE\"`, set `by` to the parameter, or name a measure in `y`.");
       } else if (plot.by == "experiment") {
         where[plot.by] = part.key;
       } else {
@@ -1413,7 +1413,7 @@ struct Reader {
     for (const Node* list : lists) {
       for (const Node& item : values_of(list)) {
         const string id = item.text.substr(0, item.text.find('@'));
-        const bool statement = item.text.find(' ') != string::npos;  // in an older manifest
+        const bool statement = item.text.find(' ') != string::npos;  // from older manifests
         if (statement || std::ranges::count(known, id) > 0) continue;
         reject_value(
             item, with_nearest("is not the id of a claim", id, Names(known.begin(), known.end())),

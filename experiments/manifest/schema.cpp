@@ -235,9 +235,9 @@ std::span<const Field> schema() {
       row<&P::start_seed>("start_seed", "", "1", {0, 9007199254740991},
                           {.stage = StageKind::shear, .selects_parent = true},
                           "with `start`: the seed of the recorded run"),
-      row<&P::start_cycle>(
-          "start_cycle", "", "1", {0, 1e6}, {.stage = StageKind::shear, .omitted_at = "0"},
-          "with `start`: the cycle of the recorded run whose state is cycle 0 of this run"),
+      row<&P::start_cycle>("start_cycle", "", "1", {0, 1e6},
+                           {.stage = StageKind::shear, .omitted_at = "0"},
+                           "with `start`: the cycle of the recorded run at which this run begins"),
       row<&P::start_noise_d>("start_noise_d", "", "d", {0, 0.1},
                              {.stage = StageKind::shear, .omitted_at = "0"},
                              "with `start`: standard deviation of normal noise on the positions; "

@@ -45,8 +45,8 @@ class Filter {
   bool passes(const std::string& value, const std::string& name = "");
   /// The first of the given texts that no value has fitted so far, or null.
   const std::string* unfound() const;
-  /// The values that were given to passes(), each once, in order. If the display name of a value
-  /// has parts that the value lacks, the list has the name after the value.
+  /// The values that passes() was called with, each once, in order. A value is followed by its
+  /// display name if the name has parts that the value lacks.
   const std::vector<std::string>& seen() const { return seen_; }
 
  private:

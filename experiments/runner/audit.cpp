@@ -63,8 +63,8 @@ void check_stage(const Stage& stage) {
   for (const Membership& m : stage.memberships) check_place(m.place, inputs, stage.resolved);
 }
 
-/// Steps at which the run may have been completed: for each completed attempt, the step of its last
-/// checkpoint and the largest step of the run so far. After a merge these steps can differ.
+/// Steps at which the run may have been completed. Each completed attempt gives two steps, which
+/// can differ after a merge: that of its last checkpoint, and the largest step of the run so far.
 std::set<std::uint64_t> completed_steps(const Store& store, const std::string& run) {
   const RunLineage stage = run_lineage(store, run).back();
   std::set<std::uint64_t> steps;

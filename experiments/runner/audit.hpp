@@ -32,10 +32,10 @@ std::vector<CheckpointRecord> sample(std::vector<CheckpointRecord> records, std:
 std::uint64_t seed_of(const Head& head);
 
 struct MeasureCheck {
-  std::size_t cached = 0;       ///< number of checkpoints that have cached measures
-  std::size_t computed = 0;     ///< number of checkpoints that were measured again
-  std::size_t not_covered = 0;  ///< number of pruned checkpoints without digests in the log
-  std::size_t absent = 0;       ///< number of measures with a digest in the log that are not cached
+  std::size_t cached = 0;              ///< number of checkpoints that have cached measures
+  std::size_t computed = 0;            ///< number of checkpoints that were measured again
+  std::size_t not_covered = 0;         ///< number of pruned checkpoints without digests in the log
+  std::size_t absent = 0;              ///< number of uncached measures with a digest in the log
   std::vector<Finding> findings = {};  ///< errors
 };
 

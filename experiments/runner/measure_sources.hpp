@@ -38,8 +38,8 @@ class MeasureSources {
                  std::uint64_t every) const;
 
   /// Whether a cached object has the digest that was logged when the checkpoint was pruned. True if
-  /// the log has no digests for this checkpoint. Empty if the log has digests for this checkpoint,
-  /// but none of them is for this object.
+  /// the log has no digests for this checkpoint. Empty if the log has digests for this checkpoint
+  /// but no digest for this object.
   std::optional<bool> is_as_pruned(const CheckpointRecord& record,
                                    const DerivedObject& object) const;
 

@@ -64,7 +64,7 @@ std::optional<double> recorded_reach(const Stage& stage, const Until& until, dou
 
 /// Where a stage ends if only one Ask (the request of one experiment) is considered.
 struct End {
-  double cycle = 0;                             ///< Ask::target_cycles, or an earlier cycle
+  double cycle = 0;                             ///< Ask::target_cycles; less if `until` ends it
   std::optional<double> reached = {};           ///< the cycle at which `until` was reached
   const CheckpointRecord* undecided = nullptr;  ///< first unmeasured checkpoint
 };
@@ -86,7 +86,7 @@ End end_by(const Stage& stage, const Ask& ask, std::span<const CheckpointRecord>
       if (!end.reached) end.undecided = &one;
       break;
     }
-    // NaN never reaches the value of `until`. Example: phi of a cell without interior grains.
+    // A measure may be NaN (phi without interior grains). NaN never reaches the value of `until`.
     if (!(known->second.number(until->measure) >= until->value)) continue;
     end.reached = one.cycle;
     break;
@@ -99,7 +99,7 @@ End end_by(const Stage& stage, const Ask& ask, std::span<const CheckpointRecord>
   return end;
 }
 
-/// Whether the stage is completed and long enough for `ask` because a recorded request includes it.
+/// Whether the stage is completed and long enough for `ask`, as a recorded request shows.
 bool is_covered(const Stage& stage, const Ask& ask) {
   return stage.state == StageState::completed && !ask.until.is_null() &&
          std::ranges::any_of(asks_of(stage.memberships), [&](const Ask& recorded) {

@@ -37,7 +37,7 @@ struct Outlook {
   /// The cycle at which the stage ends: the largest number of cycles that experiments ask for, or
   /// an earlier cycle at which `until` is known to end the stage.
   double end = 0;
-  /// Whether an `until` that was not reached yet may end the stage before `end`.
+  /// Whether the stage may end before `end`: an `until` was not reached yet, but still may be.
   bool may_end_early = false;
   /// How `until` ended the stage at its last checkpoint, as RunCompleted records it; null if no
   /// `until` ended it. {"by": "until", "measure", "value", "extra_cycles", "reached_at_cycle",
@@ -122,7 +122,7 @@ Outlook measured_outlook(const Store& store, const Stage& stage, std::span<const
 double end_for(const Store& store, const Stage& stage, const Ask& ask,
                const MeasureOptions& options);
 
-/// The recorded and pruned checkpoints requested by `asks`. Each request ends at its end_for().
+/// The recorded and pruned checkpoints that `asks` request, for each request up to end_for().
 std::vector<CheckpointRecord> checkpoints_for(const Store& store, const Stage& stage,
                                               std::span<const Ask> asks,
                                               const MeasureOptions& options = {});

@@ -434,7 +434,7 @@ TEST(PlannedLooks, RunsOfOtherSeedsAreAnUnplannedLook) {
   const Verdict verdict = at_looks(frame);
   EXPECT_EQ(verdict.ruling, Ruling::agrees);
   EXPECT_EQ(verdict.runs, 6U);
-  EXPECT_TRUE(has(verdict.note, "an unplanned look, with 4 seeds more than planned, gives: 0.04"));
+  EXPECT_TRUE(has(verdict.note, "an unplanned look, using 4 seeds more than planned, gives: 0.04"));
 }
 
 }  // namespace

@@ -493,11 +493,11 @@ TEST(OwnPlot, LeavesOutRunsWithoutAPartner) {
   runs.erase(runs.begin());  // the reference of packing 1
   const Table table = errors_of(runs);
   expect_row(table, "engine=shearcell", 25, 0.004, 0, 2);
-  EXPECT_TRUE(table.chart.note.ends_with("same packing; 3 of 9 runs have none to subtract"))
+  EXPECT_TRUE(table.chart.note.ends_with("same packing; 3 of 9 runs have no run to subtract"))
       << table.chart.note;
   for (FrameRun& run : runs) run.packing.clear();
   EXPECT_TRUE(errors_of(runs).rows.empty()) << "nobody knows their packings";
-  EXPECT_TRUE(errors_of(runs).chart.note.ends_with("9 of 9 runs have none to subtract"));
+  EXPECT_TRUE(errors_of(runs).chart.note.ends_with("9 of 9 runs have no run to subtract"));
   runs = runs_of_steps();
   runs.erase(runs.begin(), runs.begin() + 3);
   EXPECT_TRUE(errors_of(runs).rows.empty());

@@ -122,7 +122,7 @@ TEST(Verdict, WaitsAreComparedInWords) {
   EXPECT_EQ(words(-infinity, -infinity, -4), "the first is at least 16 times earlier (90 %)");
   EXPECT_EQ(words(3, -1, infinity), "the first is at most 2.0 times earlier, or later (90 %)");
   EXPECT_EQ(words(-3, -infinity, 1), "the first is at most 2.0 times later, or earlier (90 %)");
-  EXPECT_EQ(words(1, -infinity, infinity), "no bound on the ratio of the cycles (90 %)");
+  EXPECT_EQ(words(1, -infinity, infinity), "no bound on the ratio of waiting times (90 %)");
   EXPECT_EQ(words(1, 0.5, 3),
             "the first is 2.0 times later (90 % interval: 1.4 to 8.0 times later)");
   EXPECT_EQ(words(-1, -3, -0.5),

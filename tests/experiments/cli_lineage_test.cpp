@@ -20,7 +20,7 @@ TEST_F(CommandLineLineage, ShowsAFigureUncutInAPipe) {
   const Outcome shown = expect(0, {"show", "tiny/S2", "--checkpoints"},
                                {"m.yaml", "experiment: tiny", "  cycles: 2",
                                 "given at the command line: cycles 1 (manifest: 2)",
-                                "0:1:1: 2 checkpoints, with states as in the figure's record"});
+                                "0:1:1: 2 checkpoints, whose states match the figure's record"});
   const Outcome brief = expect(0, {"show", "tiny/S2"}, {"experiment: tiny"});
   EXPECT_FALSE(has(shown.out, "..."));
   const nlohmann::json all = json({"show", "tiny/S2", "--json"});

@@ -379,11 +379,11 @@ TEST_F(Prune, OnlyCopiesOfMeasuresAreCoveredByTheLog) {
       {"emptied",
        [&] { fs::resize_file(cache, 0); },
        0,
-       {" missing; the log has no hashes for 0 checkpoints"}},
+       {" missing; 0 checkpoints without hashes in the log"}},
       {"deleted",
        [&] { fs::remove(cache); },
        0,
-       {" missing; the log has no hashes for 0 checkpoints"}},
+       {" missing; 0 checkpoints without hashes in the log"}},
       {"without one measure",
        [&] { sql("DELETE FROM derived WHERE measure LIKE 'core%'"); },
        0,
@@ -440,7 +440,7 @@ TEST_F(Prune, AStorePrunedByAnEarlierVersionIsNotCovered) {
     store.prune(store.prunable({}));
   }
   fs::rename(path("aside"), cache);
-  expect(0, {"verify"}, {"the log has no hashes for 20 checkpoints", "nothing was changed\n"});
+  expect(0, {"verify"}, {"20 checkpoints without hashes in the log", "nothing was changed\n"});
   expect(0, {"table"});
 }
 

@@ -112,11 +112,11 @@ const std::vector<BadPacking> kBad = {
      "a.csv:1:1: the column x is missing. The first line must name the columns, such as "
      "x_m,y_m,z_m."},
     {"TooFew", "a.xyz", xyz("", "A 1 1 1\nA 3 3 3\n", 3),
-     "a.xyz:4:1: the file ends after 2 of the 3 grains that line 1 states. Use a complete file, "
+     "a.xyz:4:1: the file ends after 2 of the 3 grains announced in line 1. Use a complete file, "
      "or "
      "correct the number of grains."},
     {"TooMany", "a.xyz", xyz("", "A 1 1 1\nA 3 3 3\nA 5 5 5\n"),
-     "a.xyz:5:1: the file continues after the 2 grains that line 1 states. Keep one frame, or "
+     "a.xyz:5:1: the file continues after the 2 grains announced in line 1. Keep one frame, or "
      "correct the number of grains."},
     {"Zero", "a.xyz", xyz("", "", 0), "a.xyz:2:1: the file has no grains. " + kFormats},
     {"CountAlone", "a.xyz", "5",
@@ -133,8 +133,8 @@ const std::vector<BadPacking> kBad = {
     {"KeyTwice", "a.xyz", xyz(kLattice + kLattice, "A 1 1 1\nA 3 3 3\n"),
      "a.xyz:2:29: is a key that occurs twice (got Lattice). Keep one of them."},
     {"BoxLeans", "a.xyz", xyz("Lattice=\"9 0 0 0.5 9 0 0 0 9\"", "A 1 1 1\nA 3 3 3\n"),
-     "a.xyz:2:1: the box is not orthogonal: an edge leans by 0.5. Use a rectangular box. Write "
-     "the state of a sheared cell at the end of a cycle."},
+     "a.xyz:2:1: the box is not orthogonal: an edge leans by 0.5. Use a rectangular box. A "
+     "sheared cell is rectangular at the end of a cycle."},
     {"BoxNegative", "a.xyz", xyz("Lattice=\"9 0 0 0 -9 0 0 0 9\"", "A 1 1 1\nA 3 3 3\n"),
      "a.xyz:2:1: the box has length -9 along y. The edges must be positive."},
     {"BoxIncomplete", "a.xyz", xyz("Lattice=\"9 9 9\"", "A 1 1 1\nA 3 3 3\n"),
@@ -186,8 +186,8 @@ const std::vector<BadPacking> kBad = {
      "or "
      "atomic."},
     {"DataTilted", "a.data", data(kBounds + "1 0 0 xy xz yz\n", kAtoms),
-     "a.data:8:1: the box is not orthogonal: an edge leans by 1. Use a rectangular box. Write "
-     "the state of a sheared cell at the end of a cycle."},
+     "a.data:8:1: the box is not orthogonal: an edge leans by 1. Use a rectangular box. A "
+     "sheared cell is rectangular at the end of a cycle."},
     {"DataReversed", "a.data", data("9 0 xlo xhi\n0 9 ylo yhi\n0 9 zlo zhi\n", kAtoms),
      "a.data:7:1: the box has length -9 along x. The edges must be positive."},
     {"DataVelocityMissing", "a.data", data(kBounds, kAtoms + "\nVelocities\n\n1 0 0 0\n"),
@@ -201,10 +201,10 @@ const std::vector<BadPacking> kBad = {
      "a.dump:9:1: the column x is missing. Write these columns: dump ... custom ... id x y z vx vy "
      "vz."},
     {"DumpCut", "a.dump", dump("id x y z", "1 1 1 1\n"),
-     "a.dump:10:1: the file ends after 1 of the 2 grains that line 4 states. Use a complete file, "
+     "a.dump:10:1: the file ends after 1 of the 2 grains announced in line 4. Use a complete file, "
      "or correct the number of grains."},
     {"DumpOfTwoFrames", "a.dump", dump("id x y z", "1 1 1 1\n2 3 3 3\nITEM: TIMESTEP\n1\n"),
-     "a.dump:12:1: the file continues after the 2 grains that line 4 states. Keep one frame, or "
+     "a.dump:12:1: the file continues after the 2 grains announced in line 4. Keep one frame, or "
      "correct the number of grains."},
     {"DumpHeaderAlone", "a.dump", "ITEM: TIMESTEP\n0\n",
      "a.dump:2:1: the dump ends before its atoms. Use a complete dump."},
@@ -265,7 +265,7 @@ const std::string kVelocities =
     "column. Velocities must be in units of length per second.";
 const std::string kOneUnit = "Write all lengths in m (x_m) or all in d (x_d).";
 const std::string kUpright =
-    "Use a rectangular box. Write the state of a sheared cell at the end of a cycle.";
+    "Use a rectangular box. A sheared cell is rectangular at the end of a cycle.";
 
 /// A frame of extended XYZ with the columns species, position and these.
 std::string with_columns(const std::string& properties, const std::string& values) {

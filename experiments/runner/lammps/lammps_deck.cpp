@@ -73,7 +73,7 @@ class Deck {
     return std::ranges::find(cell_.wall_grains, side, &WallGrain::side) != cell_.wall_grains.end();
   }
 
-  // A drag of rate b/m [1/s] becomes implicit if a grain's mass is increased by this part: b dt/2m.
+  // The fraction b dt/2m by which a grain's mass is increased, so that its drag b is implicit.
   double added(double drag) const {
     return task_.added_mass && !for_users_ ? 0.5 * drag * scene_.time_step : 0;
   }
@@ -157,8 +157,8 @@ pair_coeff * * ${{law}})",
     add(text_, "variable shear_rate equal v_rate/cos(v_theta)^2");
   }
 
-  // Moves the wall grains of a group. `x` and `vx` name the LAMMPS variables of the displacement
-  // (from the data file) and the velocity along x. If `rises`, grains follow the moving wall in y.
+  // Moves the wall grains of a group. `x` and `vx` are LAMMPS variables of the motion along x: the
+  // displacement from the data file, and the velocity. If `rises`, they follow the wall in y.
   void carry(const char* group, const char* x, const char* vx, bool rises) {
     add(text_, "fix {0} {0} move variable v_{1} v_{2} v_zero v_{3} v_{4} v_zero", group, x,
         rises ? "rise" : "zero", vx, rises ? "rising" : "zero");

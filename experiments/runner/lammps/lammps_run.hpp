@@ -42,8 +42,8 @@ class LammpsRun {
   /// Starts LAMMPS in a temporary folder with start_lammps().
   LammpsRun(const LammpsProgram& program, const LammpsTask& task, std::size_t ranks);
 
-  /// Waits at most `patience` for the next frame; empty if none was written in this time. Throws
-  /// ProgramError, with the message of LAMMPS, if LAMMPS has ended without another frame.
+  /// Waits at most `patience` for the next frame. Returns nothing if none was written by then.
+  /// Throws ProgramError, with the message of LAMMPS, if LAMMPS has ended without another frame.
   std::optional<State> next_frame(std::chrono::milliseconds patience);
 
   /// Asks LAMMPS to write one more frame and end.
