@@ -807,7 +807,7 @@ void require_different_titles(std::span<const Curve> curves) {
   }
 }
 
-/// Sets the title and the style of y column k. `alone`: the plot has only one curve per y column.
+/// Sets title and style of the curve of column k of y. `alone`: each column has only one curve.
 void name_y(const PlotSpec& plot, std::size_t k, bool alone, Series& series) {
   const std::string& measure = k == 0 ? plot.y : plot.also[k - 1].measure;
   const std::string& name = k == 0 ? plot.column : plot.also[k - 1].name;
@@ -1034,7 +1034,7 @@ FigureResult make_plot(const PlotSpec& plot, const Frame& frame, const NameVaria
   return result;
 }
 
-/// First and last cycle for which the parts need simulated measures; empty: all cycles.
+/// First and last cycle at which the parts need measures that a simulation computes. Empty: all.
 std::optional<std::array<std::uint64_t, 2>> simulated_by(std::span<const Figure> parts) {
   std::optional<std::array<std::uint64_t, 2>> hull;
   for (const Figure& part : parts) {

@@ -69,7 +69,7 @@ struct PlotSpec {
   std::string panel = {};   ///< one panel for each value of this parameter
   Show show = Show::mean;
   LogAxes log = LogAxes::none;
-  std::string xlabel = {}, ylabel = {};  ///< of the axes, may have formulas; "": from x, y
+  std::string xlabel = {}, ylabel = {};  ///< may have formulas; "": made from x and y
   std::vector<SeriesSpec> series = {};
   std::vector<PublishedSpec> published = {};
   /// Further columns of the CSV. The first `drawn` columns also get a curve. If x and y have one
@@ -118,8 +118,8 @@ std::string variants_have(std::size_t variants, const nlohmann::json& where);
 /// of variants with the values of `minus`.
 std::string problem_of_minus(const PlotSpec& plot, std::size_t variants);
 
-/// The figures of a manifest, in the order of their first plots and claims. `question` is the title
-/// of figures with several parts.
+/// The figures of a manifest: first the figures with plots, then the figures with claims only, both
+/// in the order of the manifest. `question` is the title of a figure with several parts.
 std::vector<Figure> own_figures(std::span<const PlotSpec> plots, std::span<const ClaimSpec> claims,
                                 const NameVariants& names, const std::string& question = {});
 

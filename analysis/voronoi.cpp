@@ -150,7 +150,7 @@ class Tessellation {
     return point_[static_cast<std::size_t>(vertex)];
   }
 
-  /// Adds the periodic images whose distance in z from [0, depth) is less than `margin`.
+  /// Adds all periodic images of sites that are less than `margin` outside [0, depth) in z.
   void widen(double margin) {
     const auto is_new = [&](double distance) { return distance >= margin_ && distance < margin; };
     for (std::int32_t k = 1; (k - 1) * cell_.depth < margin; ++k) {

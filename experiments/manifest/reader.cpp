@@ -140,8 +140,8 @@ void fields(Scale& scale, const auto& visit) {
                        .example = "{drag_kg_per_s: 1.28e-3}"});
   visit(scale.start,
         {.name = "start",
-         .doc = "initial state, if not loose grains that settle: the state of a recorded run, "
-                "with different noise for each seed, or the grains of a file",
+         .doc = "initial state: the state of a recorded run, with different noise for each seed, "
+                "or the grains of a file. Default: loose grains that settle",
          .example = "{experiment: drag, variant: \"fluid=still\", seed: 3, cycle: 10, noise_d: "
                     "1.0e-13}"});
   visit(scale.seeds,
@@ -284,9 +284,9 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
          .example = "{x: onset_size_cycle, y: onset_size_phi, label: onset}"});
   visit(plot.cycle, {.name = "at_cycle",
                      .range = kCycles,
-                     .doc = "the cycle at which a curve measure is drawn. If `x` has one value for "
-                            "each run, `y` is drawn at this cycle. Default: the last cycle that "
-                            "all runs have; the CSV file and the caption give the cycle"});
+                     .doc = "the cycle to draw, if `y` is a curve for each checkpoint, or if `x` "
+                            "has one value for each run. Default: the last cycle that all runs "
+                            "have; the CSV file and the caption give the cycle"});
   visit(plot.cycles,
         {.name = "cycles",
          .range = kCycles,
@@ -351,8 +351,8 @@ void fields(Placed<ClaimSpec>& claim, const auto& visit) {
         {.name = "margin",
          .range = {0, kInfinity, true},
          .doc = "in the unit of the measure. For `onset_size_cycle` and `reaches`, the margin "
-                "applies to log2 of the ratio of the two waiting times, so 1 means a factor of 2. "
-                "The test is the log-rank test, which includes runs that end before the event"});
+                "limits log2 of the ratio of the two waiting times, so 1 means a factor of 2, and "
+                "the log-rank test is used, which includes runs that end before the event"});
   visit(claim.margin, {.name = "relative_margin",
                        .range = {0, kInfinity, true},
                        .doc = "instead of `margin`: limit of the relative difference; 0.03 means 3 "
