@@ -167,8 +167,7 @@ class Script {
     if (!chart_.letter.empty()) {
       add("set label '({})' at screen 0.015, screen 0.96 left front\n", chart_.letter);
     }
-    // Corrects gnuplot's estimate of the width of legend titles, which is about a quarter too
-    // large.
+    // Corrects gnuplot's width of the legend titles, which is too large by about a quarter.
     const Layout layout = layout_of(chart_);
     add("set key maxcols {} width -{}\n", layout.columns, layout.longest / 4);
     add("set xlabel {}\nset ylabel {}\n", literal(label_of(chart_.x)), literal(label_of(chart_.y)));

@@ -457,7 +457,7 @@ std::vector<Bin> average(const PlotSpec& plot, const Curve& curve,
       if (!by_x || !std::isfinite(sample.x)) continue;
       const bool has_y = std::isfinite(sample.y.front());
       if (!has_y && trace.missing != Missing::nothing) ++bins[sample.x].missing[trace.missing];
-      // The means of further columns include runs without y.
+      // A run without y still counts in the means of the other columns.
       if (has_y || trace.missing != Missing::nothing) own[sample.x].push_back(sample);
     }
     for (const auto& [at, samples] : own) {

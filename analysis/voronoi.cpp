@@ -48,7 +48,7 @@ struct alignas(64) Tetrahedron {
   std::array<std::int32_t, 4> neighbour;  // tetrahedron opposite to each corner
   Eigen::Vector3d centre;                 // circumcentre, set if a corner is a measured site
   std::uint8_t beyond;                    // bit w is 1: the centre is not inside wall w
-  std::uint8_t edges_done;                // a bit for each edge whose face was measured
+  std::uint8_t edges_done;                // one bit per edge, 1 after its face was measured
 };
 
 constexpr std::array<std::array<std::uint8_t, 2>, 6> edges = {

@@ -771,8 +771,7 @@ class PackingReader {
     if (fits || !holds(uses_, kDiameter)) return 1 / expected;
     const string remedy =
         std::fabs(given - in_other) <= kTolerance * in_other
-            ? fmt::format("The number would be right with the unit {}. Change the unit?",
-                          in_m ? "d" : "m")
+            ? fmt::format("The number would fit the unit {}. Is the unit right?", in_m ? "d" : "m")
         : in_m ? fmt::format("The manifest has {:.6g} m. Set `diameter_m`, or scale the file.",
                              expected)
                : "Lengths in d are divided by the diameter, so the diameter must be 1.";

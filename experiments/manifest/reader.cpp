@@ -151,8 +151,8 @@ void fields(Scale& scale, const auto& visit) {
   visit(scale.checkpoints,
         {.name = "checkpoints",
          .doc = "`every_cycles`: number of cycles between checkpoints, default 1; the last cycle "
-                "always has a checkpoint. `phases`: each of these checkpoints is followed by more "
-                "checkpoints, at these fractions of the next cycle (pause included); default none",
+                "always has a checkpoint. `phases`: after each of these checkpoints, there are "
+                "more at the given fractions of the next cycle (pause included); default none",
          .example = "{every_cycles: 1, phases: [0.25, 0.5, 0.75]}",
          .wanted = "a map of settings"});
   visit(scale.until,
@@ -210,7 +210,7 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
   visit(plot.also, {.name = "y",
                     .doc = "required; a [measure](#measures), with values at checkpoints or one "
                            "value for each run (`onset_size_phi`), or an expression of measures "
-                           "and parameters: `stress_xy_Pa/contact_pressure_Pa`. The caption states "
+                           "and parameters: `stress_xy_Pa/contact_pressure_Pa`. The caption tells "
                            "how many runs end before the onset. A list draws several columns; a "
                            "map also gives them names: `{phi_u: phi_uncorrected, phi: phi}`",
                     .names = can_be_y,
@@ -232,7 +232,7 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
       plot.minus,
       {.name = "minus",
        .doc = "swept values that select one variant. The `y` of this variant, for the same packing "
-              "and cycle, is subtracted. The caption states how many runs have no `y` to subtract",
+              "and cycle, is subtracted. The caption tells how many runs have no `y` to subtract",
        .example = "{steps_per_cycle: 45600}"});
   visit(plot.by,
         {.name = "by",
