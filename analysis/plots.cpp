@@ -299,7 +299,7 @@ std::vector<Group> groups_of(const PlotSpec& plot, std::span<const Selected> run
   return found;
 }
 
-/// The titles of the curves: the name of the variant if there is only one, otherwise Group::key.
+/// Title of each curve: the name of its variant or, if it has several variants, of Group::key.
 std::vector<std::string> titles_of(const PlotSpec& plot, std::span<const Group> groups,
                                    const NameVariants& name) {
   std::vector<json> keys;

@@ -14,7 +14,7 @@
 
 namespace shearcell {
 
-/// Wall planes and wall grains in one pose of the walls. The grains of the moving wall have the
+/// Wall planes and wall grains at a given pose of the walls. The grains of the moving wall have the
 /// first permanent ids. The other wall grains follow in the order of Cell::wall_grains.
 class Walls {
  public:

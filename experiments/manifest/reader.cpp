@@ -311,7 +311,7 @@ void fields(Placed<ClaimSpec>& claim, const auto& visit) {
   visit(claim.figure,
         {.name = "figure", .doc = "see `figure` of a plot; default: the first part of `id`"});
   visit(claim.compare, {.name = "compare",
-                        .doc = "required; like `y` of a plot, but curve measures are not allowed",
+                        .doc = "required; like `y` of a plot, except measures that are curves",
                         .names = can_be_compared,
                         .terms = terms,
                         .required = true});

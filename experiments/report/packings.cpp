@@ -52,7 +52,7 @@ constexpr std::size_t kFactsInPage = 2500;  // facts and profiles of a frame, as
 
 struct ChosenRun : Run {
   std::vector<CheckpointRecord> checkpoints = {};  // after fit() only those that the page shows
-  std::size_t bytes = 0;                           // size of one checkpoint in the page
+  std::size_t bytes = 0;                           // size of one checkpoint in the HTML page
   std::size_t wall_grains = 0;
 };
 
