@@ -77,9 +77,9 @@ Ruling ruling_of(const Interval& interval, double margin, Relation claimed);
 
 /// The verdict that follows from the estimate's interval; undecided without an estimate. If the
 /// claim has a reason why it cannot be decided, the verdict is undecidable, with this reason.
-/// If undecided, `runs_needed` (more than Estimate::runs) runs would decide the claim with 90 %
-/// probability. Assumed true value: 0 (Relation::same) or twice the margin. If the interval
-/// excludes 0, or if the runs should have sufficed for this value, the estimate is assumed.
+/// `runs_needed`: number of runs, above Estimate::runs, that decides an undecided claim with 90 %
+/// probability if the true value is 0 (Relation::same) or twice the margin. If the interval
+/// excludes 0, or if the runs should have sufficed, the true value is assumed to be the estimate.
 Verdict decide(const Claim& claim, std::string quantity, const std::optional<Estimate>& estimate,
                std::size_t runs, std::string note, Table entered = {},
                Counted counted = Counted::runs);

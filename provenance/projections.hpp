@@ -16,7 +16,7 @@
 
 namespace shearcell {
 
-/// Derived tables. Schemas 1 and 2 lack `manifests` and `newest`, and columns of the first two.
+/// Derived tables. Schemas 1 and 2 lack the last two, and columns of `runs` and `memberships`.
 inline constexpr std::array<std::string_view, 6> projected_tables = {
     "runs", "memberships", "checkpoints", "figures", "manifests", "newest"};
 
