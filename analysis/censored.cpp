@@ -16,7 +16,7 @@ namespace {
 
 using CensoredValues = std::span<const CensoredValue>;
 
-/// Hazard of the standard normal distribution: its density divided by Q(z).
+/// Hazard of the standard normal distribution: density at z / probability of a value above z.
 double normal_hazard(double z) {
   if (z > 25) return z + 1 / z - 2 / (z * z * z);  // std::erfc underflows near z = 38
   return std::sqrt(2 / std::numbers::pi) * std::exp(-z * z / 2) / std::erfc(z / std::sqrt(2.0));

@@ -17,7 +17,7 @@ namespace {
 
 using nlohmann::json;
 
-/// The cell as a CSV field. If `significant` is 0, a number is written with all digits.
+/// The table cell as a CSV field. If `significant` is 0, a number is written with all digits.
 std::string field_text(const TableCell& value, int significant) {
   if (const auto* text = std::get_if<std::string>(&value)) return csv_field(*text);
   if (const auto* whole = std::get_if<std::int64_t>(&value)) return std::to_string(*whole);

@@ -224,8 +224,8 @@ ClaimSides sides_of(const ClaimSpec& claim, std::span<const FrameRun> runs) {
 
 namespace {
 
-/// For each run of side `k`: the values of the swept keys that this side does not select. A claim
-/// may average over such values if they are the same on both sides.
+/// For each run of side `k`: its swept values, without the keys that select this side. A claim may
+/// average over these values if they are the same on both sides.
 std::set<nlohmann::json> others_of(const ClaimSpec& claim, const ClaimSides& sides, std::size_t k) {
   std::set<nlohmann::json> others;
   for (const FrameRun* run : sides.runs.at(k)) {

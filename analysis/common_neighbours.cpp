@@ -121,7 +121,7 @@ Lattice close_packed(std::span<const Neighbour> near) {
 }
 
 Lattice body_centred(std::span<const Neighbour> near) {
-  double side = 0;  // mean side of the cubic cell, from both shells
+  double side = 0;  // mean side of the cubic cell, from 8 first and 6 second neighbours
   for (std::size_t a = 0; a < near.size(); ++a) {
     side += near[a].distance * (a < 8 ? 2 / std::numbers::sqrt3 : 1) / 14;
   }

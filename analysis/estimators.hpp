@@ -33,8 +33,8 @@ struct Estimator {
   std::optional<bool> of_run = false;
   bool over_variants = false;  ///< a group of runs may contain several variants
   bool one_side = false;       ///< its claims have one group, even without a published number
-  /// Returns how to compute one number per run. The mean of these numbers over the runs, or the
-  /// difference of the means of two groups, is then estimated. If null, `decide` gives the verdict.
+  /// Returns a Scalar, which computes one number per run. The estimate is the mean of these numbers
+  /// or, for two groups, the difference of their means. If null, `decide` gives the verdict.
   Scalar (*scalar)(const ClaimSpec& claim) = nullptr;
   /// Gives the verdict if `scalar` is null. `b` is empty if has_one_side() is true for the claim.
   Verdict (*decide)(const ClaimSpec& claim, const Claim& stated, RunGroup a, RunGroup b) = nullptr;

@@ -45,7 +45,7 @@ struct Figure {
   /// First and last cycle that the figure uses. It uses all checkpoints within these cycles. If
   /// empty, the figure uses all cycles, but only the checkpoints at whole cycles.
   std::optional<std::array<std::uint64_t, 2>> within = {};
-  /// First and last cycle for which the figure needs simulated measures; empty: all cycles.
+  /// First and last cycle with measures that a simulation computes for the figure. Empty: all.
   std::optional<std::array<std::uint64_t, 2>> simulated = {};
   /// The experiments whose runs the figure uses; empty: the experiment of its manifest.
   std::vector<std::string> of = {};

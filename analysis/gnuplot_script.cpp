@@ -167,7 +167,7 @@ class Script {
     if (!chart_.letter.empty()) {
       add("set label '({})' at screen 0.015, screen 0.96 left front\n", chart_.letter);
     }
-    // gnuplot overestimates the width of titles by about a quarter and would use fewer columns.
+    // gnuplot overestimates legend titles by about a quarter, which would give too few columns.
     const Layout layout = layout_of(chart_);
     add("set key maxcols {} width -{}\n", layout.columns, layout.longest / 4);
     add("set xlabel {}\nset ylabel {}\n", literal(label_of(chart_.x)), literal(label_of(chart_.y)));

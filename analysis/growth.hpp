@@ -19,7 +19,7 @@ namespace shearcell {
 /// counted if, for example, most of its grains are in a crystallite of the same size.
 struct GrowthCount {
   std::size_t grew = 0;  ///< more than half of the grains are in larger crystallites
-  /// Like `grew`, but the main contributor to the later crystallite was a larger crystallite.
+  /// Like `grew`, but a larger crystallite contributed the most grains to the later crystallite.
   std::size_t absorbed = 0;
   std::size_t shrank = 0;    ///< more than half of the grains are in smaller crystallites
   std::size_t vanished = 0;  ///< not in `shrank`, but most grains are in smaller or no crystallites

@@ -131,8 +131,8 @@ struct Provider {
 
   /// Name and parameters as one text. Providers with equal texts compute the same results.
   std::string key() const { return name + " " + parameters.dump(); }
-  /// Whether results are stored. Not stored: results from `record` and `history`, which are cheap
-  /// to compute, and measures of each grain, which need more space than the checkpoint.
+  /// Whether results are stored. Results from `record` and `history` are not: they are cheap to
+  /// compute. Measures of each grain are not: they need more space than the checkpoint.
   bool is_kept() const;
   bool has(MeasureKind kind) const;
   /// Adds a result to `measures`. Throws AnalysisError if the result is not from this provider.
@@ -144,7 +144,7 @@ std::span<const Provider> all_providers();
 /// The provider with this name, which must exist.
 const Provider& provider(std::string_view name);
 std::vector<std::string> provider_names(bool (*fits)(const Provider&));
-/// Provider of volume fractions and numbers of crystallites, which every measured frame contains.
+/// Provider of volume fractions and numbers of crystallites. Every measured frame contains them.
 inline constexpr const char* scalars_provider = "scalars";
 /// Provider of the computing time, which is read from the log (FrameRun::core_time_s).
 inline constexpr const char* cost_provider = "cost";

@@ -238,7 +238,7 @@ std::vector<Provider> mechanics_providers() {
             {"elastic_energy_per_grain_J", "J",
              "elastic energy of all contacts, divided by the number of grains"},
             {"kinetic_energy_per_grain_J", "J",
-             "kinetic energy half a time step earlier, divided by the number of grains"},
+             "kinetic energy per grain, half a time step before the checkpoint"},
             {"gravitational_energy_per_grain_J", "J",
              "weight of a grain times mean height above the bottom wall"}},
        .compute = compute}};

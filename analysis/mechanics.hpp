@@ -36,7 +36,7 @@ struct Mechanics {
   double kinetic_energy = 0;  ///< per grain, half a time step before the checkpoint [m d^2/s^2]
   double height = 0;          ///< mean height of grains above the plane of the bottom wall [d]
   /// Pressure of each grain [k/d]: the trace of f (x) l, summed over its contacts with grains and
-  /// walls, divided by three times the volume of its cell.
+  /// walls, divided by three times the volume of its Voronoi cell.
   std::vector<double> grain_pressure;
 };
 

@@ -177,12 +177,12 @@ std::vector<Provider> motion_providers() {
                 {"reversible_percent", "%",
                  "interior grains at most 0.01 d from their position one cycle earlier"},
                 {"msd_inside_crystal_d2", "d^2",
-                 "mean squared displacement in 1 cycle, for crystalline grains inside a crystal"},
+                 "mean squared displacement of crystalline grains inside a crystal, over 1 cycle"},
                 {"msd_crystal_boundary_d2", "d^2",
-                 "mean squared displacement in 1 cycle, for crystalline grains next to disordered "
-                 "grains"},
+                 "mean squared displacement of crystalline grains next to disordered grains, over "
+                 "1 cycle"},
                 {"msd_disordered_d2", "d^2",
-                 "mean squared displacement in 1 cycle, for disordered grains"}},
+                 "mean squared displacement of disordered grains, over 1 cycle"}},
            .compute = motion_over_one_cycle,
            .cycles_back = 1},
           {.name = "motion_10",

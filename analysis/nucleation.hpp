@@ -83,9 +83,9 @@ inline constexpr double rate_step = 0.0005;
 /// for which the log-likelihood is within a limit of its maximum. If runs share a packing, the
 /// limit is multiplied by the ratio of the variance of the score between packings to that of
 /// independent runs, if this ratio is above 1 (L. Pace, A. Salvan, N. Sartori, Stat. Sinica 21, 129
-/// (2011)). Empty for fewer than least_runs packings. Also empty unless, for some event, there is a
-/// cell with fewer grains N and, for some event, a cell with more grains N, each at the same
-/// amplitude and nearly the same phi as the event.
+/// (2011)). Empty for fewer than least_runs packings. Also empty if N does not vary enough: for
+/// some event there must be a cell with fewer grains, and for some event a cell with more grains,
+/// at the same amplitude and nearly the same phi as the event.
 std::optional<Estimate> size_exponent(RunGroup runs, Region region,
                                       double level = confidence_level);
 

@@ -299,7 +299,7 @@ std::vector<Group> groups_of(const PlotSpec& plot, std::span<const Selected> run
   return found;
 }
 
-/// The titles of the curves: the name of the variant if there is only one, otherwise Group::key.
+/// Title of each curve: the name of its variant or, if it has several variants, of Group::key.
 std::vector<std::string> titles_of(const PlotSpec& plot, std::span<const Group> groups,
                                    const NameVariants& name) {
   std::vector<json> keys;
@@ -457,7 +457,7 @@ std::vector<Bin> average(const PlotSpec& plot, const Curve& curve,
       if (!by_x || !std::isfinite(sample.x)) continue;
       const bool has_y = std::isfinite(sample.y.front());
       if (!has_y && trace.missing != Missing::nothing) ++bins[sample.x].missing[trace.missing];
-      // The means of further columns include runs without a y.
+      // A run without y still counts in the means of the other columns.
       if (has_y || trace.missing != Missing::nothing) own[sample.x].push_back(sample);
     }
     for (const auto& [at, samples] : own) {
@@ -807,7 +807,7 @@ void require_different_titles(std::span<const Curve> curves) {
   }
 }
 
-/// Sets the title and the style of y column k. `alone`: the plot has only one curve per y column.
+/// Sets title and style of the curve of column k of y. `alone`: each column has only one curve.
 void name_y(const PlotSpec& plot, std::size_t k, bool alone, Series& series) {
   const std::string& measure = k == 0 ? plot.y : plot.also[k - 1].measure;
   const std::string& name = k == 0 ? plot.column : plot.also[k - 1].name;
@@ -1034,7 +1034,7 @@ FigureResult make_plot(const PlotSpec& plot, const Frame& frame, const NameVaria
   return result;
 }
 
-/// First and last cycle for which the parts need simulated measures; empty: all cycles.
+/// First and last cycle at which the parts need measures that a simulation computes. Empty: all.
 std::optional<std::array<std::uint64_t, 2>> simulated_by(std::span<const Figure> parts) {
   std::optional<std::array<std::uint64_t, 2>> hull;
   for (const Figure& part : parts) {

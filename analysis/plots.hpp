@@ -33,8 +33,8 @@ inline constexpr auto kNames<LogAxes> = names_in_order<LogAxes>("none", "x", "y"
 /// replaced by a style that depends on the swept values (styles.hpp).
 struct SeriesSpec {
   nlohmann::json where;     ///< parameter -> value, for all variants of the curve
-  std::string column = {};  ///< instead of `where`: the name of one of several y columns
-  std::string label = {};   ///< may have formulas (formula())
+  std::string column = {};  ///< instead of `where`: the name of a column, if `y` has several
+  std::string label = {};   ///< may contain formulas, see formula()
   std::string colour = {};  ///< "#rrggbb", or one of colour_names
   std::string marker = {};  ///< one of marker_names
 };
@@ -69,7 +69,7 @@ struct PlotSpec {
   std::string panel = {};   ///< one panel for each value of this parameter
   Show show = Show::mean;
   LogAxes log = LogAxes::none;
-  std::string xlabel = {}, ylabel = {};  ///< of the axes, may have formulas; "": from x, y
+  std::string xlabel = {}, ylabel = {};  ///< may contain formulas; "": made from x and y
   std::vector<SeriesSpec> series = {};
   std::vector<PublishedSpec> published = {};
   /// Further columns of the CSV. The first `drawn` columns also get a curve. If x and y have one
@@ -107,8 +107,8 @@ using NameVariants = std::function<std::map<nlohmann::json, std::string>(
 
 /// The figure of a plot. It has one panel NAME; with PlotSpec::panel it has panels NAME_1, NAME_2,
 /// ... with equal ranges. Runs are averaged in bins of phi if x is phi, at each cycle if x is
-/// another measure, and at one cycle if x is a parameter. A curve measure is drawn at one cycle.
-/// `names` gives the titles of curves; without it a title has the form "fluid=still".
+/// another measure, and at one cycle if x is a parameter. A measure that is a curve is drawn at one
+/// cycle. `names` gives the titles of curves; without it a title has the form "fluid=still".
 Figure plot_figure(const PlotSpec& plot, const NameVariants& names = {});
 
 /// Words for a message: "2 variants have fluid=still" or "no variant has fluid=still".
@@ -118,8 +118,8 @@ std::string variants_have(std::size_t variants, const nlohmann::json& where);
 /// of variants with the values of `minus`.
 std::string problem_of_minus(const PlotSpec& plot, std::size_t variants);
 
-/// The figures of a manifest, in the order of their first plots and claims. `question` is the title
-/// of figures with several parts.
+/// The figures of a manifest: first the figures with plots, then the figures with claims only, both
+/// in the order of the manifest. `question` is the title of a figure with several parts.
 std::vector<Figure> own_figures(std::span<const PlotSpec> plots, std::span<const ClaimSpec> claims,
                                 const NameVariants& names, const std::string& question = {});
 

@@ -304,7 +304,7 @@ std::optional<Estimate> log2_wait_ratio(std::span<const Waiting> a, std::span<co
                                         double level) {
   if (std::min(a.size(), b.size()) < least_runs) return std::nullopt;
   if (event_cycles(a).empty() && event_cycles(b).empty()) return std::nullopt;
-  std::set<double> factors;  // log2 of the factors on b that make two times equal
+  std::set<double> factors;  // log2 of the ratio of each time in `a` to each time in `b`
   for (const Waiting& x : a) {
     for (const Waiting& y : b) {
       if (x.cycle > 0 && y.cycle > 0) factors.insert(std::log2(x.cycle / y.cycle));

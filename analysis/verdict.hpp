@@ -77,9 +77,9 @@ Ruling ruling_of(const Interval& interval, double margin, Relation claimed);
 
 /// The verdict that follows from the estimate's interval; undecided without an estimate. If the
 /// claim has a reason why it cannot be decided, the verdict is undecidable, with this reason.
-/// `runs_needed` runs would decide the claim with 90 % probability if the true value is 0 (for
-/// Relation::same) or twice the margin. If the interval excludes 0, or if this many runs exist
-/// already, the assumed true value is the estimate. `runs_needed` exceeds Estimate::runs.
+/// `runs_needed`: number of runs, above Estimate::runs, that decides an undecided claim with 90 %
+/// probability if the true value is 0 (Relation::same) or twice the margin. If the interval
+/// excludes 0, or if the runs should have sufficed, the true value is assumed to be the estimate.
 Verdict decide(const Claim& claim, std::string quantity, const std::optional<Estimate>& estimate,
                std::size_t runs, std::string note, Table entered = {},
                Counted counted = Counted::runs);
@@ -90,7 +90,7 @@ std::map<Ruling, std::size_t> rulings_of(std::span<const Verdict> verdicts);
 /// The rulings in words, such as "1 agrees, 1 refuted"; "" if there are none.
 std::string headline_of(const std::map<Ruling, std::size_t>& rulings);
 
-/// Makes the ruling undecided, unless the claim cannot be decided.
+/// Sets the ruling to undecided, unless it is undecidable.
 void withhold(Verdict& verdict);
 
 /// Joins the table Verdict::entered of each verdict into one table. The first column is the claim.

@@ -48,7 +48,7 @@ struct alignas(64) Tetrahedron {
   std::array<std::int32_t, 4> neighbour;  // tetrahedron opposite to each corner
   Eigen::Vector3d centre;                 // circumcentre; unset if no corner is a measured site
   std::uint8_t beyond;                    // bit w is 1: the centre is not inside wall w
-  std::uint8_t edges_done;                // a bit for each edge whose face was measured
+  std::uint8_t edges_done;                // one bit per edge, 1 after its face was measured
 };
 
 constexpr std::array<std::array<std::uint8_t, 2>, 6> edges = {
@@ -150,7 +150,7 @@ class Tessellation {
     return point_[static_cast<std::size_t>(vertex)];
   }
 
-  /// Adds the periodic images whose distance in z from [0, depth) is less than `margin`.
+  /// Adds all periodic images of sites that are less than `margin` outside [0, depth) in z.
   void widen(double margin) {
     const auto is_new = [&](double distance) { return distance >= margin_ && distance < margin; };
     for (std::int32_t k = 1; (k - 1) * cell_.depth < margin; ++k) {

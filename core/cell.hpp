@@ -80,17 +80,17 @@ inline double distance_to(const WallPlane& plane, double x, double y) {
   return (x - plane.point[0]) * plane.normal[0] + (y - plane.point[1]) * plane.normal[1];
 }
 
-/// The four wall planes in a pose, indexed by WallSide.
+/// The four wall planes at the given pose, indexed by WallSide.
 std::array<WallPlane, 4> wall_planes(const Cell& cell, const WallPose& pose);
 
 /// The pose at tilt angle `theta` [rad] with the moving wall at `wall_height` [d]. The result has
 /// the same bits on every machine.
 WallPose wall_pose(const Cell& cell, double theta, double wall_height);
 
-/// Centre of one wall grain in a pose [d].
+/// Centre of one wall grain at the given pose [d].
 Eigen::Vector3d wall_grain_position(const Cell& cell, const WallPose& pose, const WallGrain& grain);
 
-/// Centres of all wall grains in a pose, 3 x n [d], in the order of Cell::wall_grains.
+/// Centres of all wall grains at the given pose, 3 x n [d], in the order of Cell::wall_grains.
 Eigen::Matrix3Xd wall_grain_positions(const Cell& cell, const WallPose& pose);
 
 /// Velocities of all wall grains [d/s] while tan(theta) changes at `shear_rate` [1/s] and the

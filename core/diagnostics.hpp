@@ -18,7 +18,7 @@ struct Contact {
   Kind kind;
   std::int32_t grain;
   std::int32_t other;
-  WallSide side;           ///< wall that the grain touches; unused for kind grain
+  WallSide side;           ///< wall that the grain touches; unused if `kind` is grain
   double overlap;          ///< [d]
   Eigen::Vector3d normal;  ///< unit vector towards `grain`
 };

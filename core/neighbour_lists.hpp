@@ -25,7 +25,7 @@ namespace shearcell {
 struct ListSettings {
   double outer_cutoff = 1.25;  ///< outer cutoff for two grains that move only with the shear [d]
   double inner_cutoff = 1.04;  ///< inner cutoff for two grains that move only with the shear [d]
-  double widest_cutoff = 1.6;  ///< cutoff for the fastest grains if the cell is deep enough [d]
+  double widest_cutoff = 1.6;  ///< cutoff for the fastest grains [d]; less in a shallow cell
   bool rebuild_every_step = false;
   bool sort_memory = true;  ///< store neighbouring grains close together in memory
 

@@ -51,7 +51,7 @@ void touch_plane(Sum& sum, const double* own, const WallPlane& plane) {
   sum.y = std::fma(overlap, plane.normal[1], sum.y);
 }
 
-// Contact sum of grain g [d].
+// Sum of the overlap vectors of all contacts of grain g [d].
 Sum contact_sum(const StepTask& t, std::size_t g) {
   const double* own = t.rows + 4 * g;
   Sum sum{0, 0, 0};

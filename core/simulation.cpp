@@ -122,7 +122,7 @@ void Simulation::set_state(const State& state) {
   was_set_ = true;
 }
 
-// Prepares a kernel call at the present positions. Margins will be checked at the tilt `tan_theta`.
+// Prepares a kernel call at the present positions. It will check list margins at `tan_theta`.
 void Simulation::set_contacts(double tan_theta) {
   task_.rows = rows_[0].data();
   task_.next_rows = rows_[1].data();

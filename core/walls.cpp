@@ -38,7 +38,7 @@ void Walls::choose_active(const WallPose& pose, double reach) {
   }
 }
 
-// Uses the same operations in the same order as wall_grain_position(), so the bits are equal.
+// Uses the operations of wall_grain_position() in the same order, so both give the same bits.
 void Walls::place(const WallPose& pose, double* rows, Team& team) const {
   const double bottom_x = (pose.bottom - pose.top) * pose.tan_theta;
   const double bottom_y = pose.bottom - cell_.bottom;

@@ -14,8 +14,8 @@
 
 namespace shearcell {
 
-/// Planes and wall grains in a pose. Permanent ids begin with the grains of the moving wall. The
-/// other wall grains follow in the order of Cell::wall_grains.
+/// Wall planes and wall grains at a given pose of the walls. The grains of the moving wall have the
+/// first permanent ids. The other wall grains follow in the order of Cell::wall_grains.
 class Walls {
  public:
   explicit Walls(const Cell& cell);

@@ -55,10 +55,10 @@ struct WatchTask {
 /// overlap limit. The time step must be below 2/omega for each frequency omega of the contact
 /// network. Because (a - b)^2 <= (1 + c) a^2 + (1 + 1/c) b^2, no omega^2 exceeds the largest of the
 /// following bounds. The bound of a grain is k/m times the largest eigenvalue of the sum of w n n^T
-/// over its contacts: w is 2 for a grain, 1 for a fixed wall and 5/4 for the moving wall. The bound
-/// of the moving wall is k 5 (sum of n_y^2) / (mass of the wall). The largest bound is exact for a
-/// pair (2 k/m) and for an FCC crystal (8 k/m). The checks take as long as about four time steps.
-/// Throws NumericalFailure. It names the failing grain that is stored first in memory.
+/// over its contacts: w is 2 for contacts with grains, 1 with fixed walls, 5/4 with the moving
+/// wall. The bound of the moving wall is k 5 (sum of n_y^2) / (mass of the wall). The largest bound
+/// is exact for a pair (2 k/m) and for an FCC crystal (8 k/m). The checks take as long as about
+/// four time steps. Throws NumericalFailure for the failing grain that is stored first in memory.
 void check_grains(const WatchTask& task);
 
 }  // namespace shearcell

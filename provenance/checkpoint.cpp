@@ -29,8 +29,8 @@ using hdf5::Shape;
 
 static_assert(std::endian::native == std::endian::little, "files need little-endian numbers");
 
-/// Calls field(name, value) for each number of /restart, in the order in the file. cell_numbers()
-/// does the same for /restart/cell.
+/// Calls field(name, value) for each number in the group /restart, in the order of the file.
+/// cell_numbers() does the same for /restart/cell.
 void restart_numbers(auto& checkpoint, auto field) {
   field("time_s", checkpoint.time_s);
   field("cycle", checkpoint.cycle);

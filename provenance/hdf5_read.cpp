@@ -149,7 +149,7 @@ Object::Object(Bytes file, std::uint64_t address, std::string path)
     for (std::size_t b = 0; b < blocks.size(); ++b) {
       for (Cursor cursor(blocks[b]); cursor.rest().size() >= 8;) {
         // The count decreases, so blocks that point at each other cannot cause an endless loop.
-        if (messages-- == 0) fail("has more messages than its header gives");
+        if (messages-- == 0) fail("has more messages than the number in its header");
         const std::uint64_t type = cursor.number(2), size = cursor.number(2);
         const std::uint64_t flags = cursor.number(1);
         cursor.take(3);
@@ -163,7 +163,7 @@ Object::Object(Bytes file, std::uint64_t address, std::string path)
         }
       }
     }
-    if (messages != 0) fail("has fewer messages than its header gives");
+    if (messages != 0) fail("has fewer messages than the number in its header");
   } catch (const Short&) {
     fail("is truncated");
   }

@@ -130,7 +130,7 @@ struct RunMerge {
   std::optional<Stage> before;       ///< the run in the store before the merge
   std::optional<Event> last_claim;   ///< last event in the store that began or ended an attempt
   std::set<std::string> known;       ///< SHA-256 of checkpoints that are not new
-  std::set<std::uint64_t> attempts;  ///< events of copied attempts: their seq in the source
+  std::set<std::uint64_t> attempts;  ///< seq (in the source) of the events of copied attempts
   bool source_wins = false;          ///< the source has a later step or state of the run
 
   bool wants(const Database& into, const Event& event) const {

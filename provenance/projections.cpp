@@ -219,7 +219,7 @@ class Projector {
     run("UPDATE runs SET state = 'running', error = '', attempts = attempts + 1 WHERE id = ?", id_);
   }
 
-  /// Makes `manifest` the newest at this scale if it was registered after the present newest one.
+  /// Makes `manifest` the newest at this scale unless the present newest was registered later.
   void show_newest(const std::string& experiment, const std::string& scale,
                    const std::string& manifest) const {
     run("INSERT INTO newest VALUES(?1, ?2, ?3) ON CONFLICT DO UPDATE SET manifest = ?3 WHERE "

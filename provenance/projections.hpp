@@ -16,7 +16,7 @@
 
 namespace shearcell {
 
-/// Derived tables. Schemas 1 and 2 lack the last two tables and some columns of the first two.
+/// Derived tables. Schemas 1 and 2 lack the last two, and columns of `runs` and `memberships`.
 inline constexpr std::array<std::string_view, 6> projected_tables = {
     "runs", "memberships", "checkpoints", "figures", "manifests", "newest"};
 
@@ -54,7 +54,7 @@ NotFound unknown_checkpoint(std::string_view run, std::string_view sha256);
 /// Whether `wanted` has a place that the stage lacks, or requests a larger target or another
 /// checkpoint interval at a known place. `known`: the stored stage; nothing if there is none.
 bool adds_something(const std::optional<Stage>& known, const Membership& wanted);
-/// Whether no other run was declared for `place` after `run`, for example from another packing.
+/// False if another run was declared for `place` after `run`, for example from another packing.
 bool holds_place(const sqlite::Database& database, std::string_view run, const Place& place);
 
 /// The stages whose ids begin with `prefix`, in the order in which they were declared.

@@ -96,9 +96,9 @@ struct Stage {
   std::uint64_t grains = 0;
   std::uint64_t target_cycles = 0;                ///< the largest declared target
   std::uint64_t attempts = 0;                     ///< number of starts and resumes
-  double cycle = 0;                               ///< cycle of the furthest checkpoint
-  std::uint64_t step = 0;                         ///< step of the furthest checkpoint
-  std::string state_hash;                         ///< of the furthest checkpoint, or ""
+  double cycle = 0;                               ///< cycle of the last checkpoint
+  std::uint64_t step = 0;                         ///< step of the last checkpoint
+  std::string state_hash;                         ///< of the last checkpoint, or ""
   double wall_seconds = 0;                        ///< sum over all checkpoints
   double particle_steps = 0;                      ///< sum over all checkpoints
   nlohmann::json ends = nlohmann::json::array();  ///< why the stage ended, one entry per completion

@@ -79,7 +79,7 @@ void require_objects(const std::filesystem::path& folder, const sqlite::Database
   } catch (const StoreDamaged&) {
     return;  // `rebuild` repairs the damaged table
   }
-  const std::filesystem::path objects = folder / "objects";  // created before checkpoint events
+  const std::filesystem::path objects = folder / "objects";  // exists before a checkpoint is logged
   std::error_code unreadable;
   if (std::filesystem::exists(objects) && !std::filesystem::is_empty(objects, unreadable)) return;
   if (unreadable) return;
@@ -207,7 +207,7 @@ void Store::append_held(const std::string& id, const NewEvent& event, bool relea
   const auto held = held_.find(id);
   if (held == held_.end()) {
     throw ConcurrencyConflict(
-        fmt::format("run {}: this process must start the run before it records", id));
+        fmt::format("run {}: this process has not started the run, so it cannot record it", id));
   }
   if (const std::string why = loss_of(database_, self_.token, id, held->second); !why.empty()) {
     held_.erase(held);
@@ -301,7 +301,7 @@ std::uint64_t Store::start_stage(const std::string& id, const json& host,
   for (const Lease& lease : query_leases(database_, id)) {
     if (lease.holder.token == self_.token || lapsed(lease, now_ms())) continue;
     throw ConcurrencyConflict(
-        fmt::format("run {}: another program computes it ({})", id, describe(lease.holder)));
+        fmt::format("run {}: another program is computing it ({})", id, describe(lease.holder)));
   }
   if ((known->state == StageState::completed) != fill) {
     throw ConcurrencyConflict(fmt::format("run {}: it is {}completed", id, fill ? "not " : ""));

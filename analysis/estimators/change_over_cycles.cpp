@@ -38,8 +38,7 @@ const Estimator change_over_cycles = {
 
 const Estimator relative_fall = {
     .name = "relative_fall",
-    .meaning =
-        "1 minus the ratio of the value at the last cycle of `cycles` to the value at the first",
+    .meaning = "1 - (value at the last cycle of `cycles`) / (value at the first cycle of `cycles`)",
     .key = "cycles",
     .scalar = [](const ClaimSpec& claim) {
       return between_cycles(claim, "relative fall",

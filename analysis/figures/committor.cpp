@@ -82,7 +82,7 @@ std::int32_t largest_in(const CrystalliteMap& map) {
   return map.size.empty() ? 0 : std::ranges::max(map.size);
 }
 
-/// Adds the outcomes of a state's crystallites in all clones or, if it has none, adds a control.
+/// Adds each crystallite of a state, or one control, with its outcomes in the clones of the state.
 void add_state(RunGroup clones, Amplitude& to) {
   std::vector<std::vector<const CrystalliteMap*>> maps;  // of each clone
   for (const FrameRun* clone : clones) maps.push_back(maps_of(*clone));

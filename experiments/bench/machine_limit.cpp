@@ -26,7 +26,7 @@ double fused_per_second(D d) {
   using V = hn::Vec<D>;
   const V half = hn::Set(d, 0.5);
   V chains[kChains];
-  double start = 0.1;  // the compiler would merge chains of equal values
+  double start = 0.1;  // chains with equal first values would be merged by the compiler
   for (V& v : chains) v = hn::Set(d, start += 0.1);
   const Stopwatch watch;
   for (std::size_t k = 0; k < kRounds; ++k) {

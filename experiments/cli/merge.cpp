@@ -20,7 +20,7 @@ void merge(const std::vector<std::string>& sources, Context& context) {
   for (const std::string& source : sources) {  // checks all sources before a store is created
     if (!source.empty() && std::filesystem::exists(std::filesystem::path(source) / "store.sqlite"))
       continue;
-    throw NotFound(fmt::format("'{}': there is no store in this folder to merge", source));
+    throw NotFound(fmt::format("'{}': this folder contains no store", source));
   }
   Store store(context.store, Access::create);
   std::set<std::string> known = left_out(store);

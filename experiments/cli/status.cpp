@@ -200,11 +200,11 @@ nlohmann::json facts(const std::optional<Estimate>& estimate) {
 }
 
 void print(const Estimate& left) {
-  print_text(
-      "left: {}, {:.3g} particle-steps, {} {}, computing {} at a time{}\n",
-      counted(left.work.stages, "stage"), left.work.particle_steps,
-      left.at_most ? "at most" : "about", format_duration(left.seconds()), left.at_a_time,
-      left.running ? ", until " + local_time(left.seconds()) : "; no process computes them now");
+  print_text("left: {}, {:.3g} particle-steps, {} {}, computing {} at a time{}\n",
+             counted(left.work.stages, "stage"), left.work.particle_steps,
+             left.at_most ? "at most" : "about", format_duration(left.seconds()), left.at_a_time,
+             left.running ? ", until " + local_time(left.seconds())
+                          : "; no process is computing them now");
 }
 
 void print_tables(const View& view) {

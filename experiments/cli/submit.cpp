@@ -235,7 +235,7 @@ void add_job_options(CLI::App& command, SubmitOptions& options) {
       ->check(unfit_scratch)
       ->type_name("DIR");
   add_number(command, "--warn", job.warn_seconds,
-             "Time [s] before the limit at which a task writes checkpoints and queues itself again",
+             "How long before its time limit [s] a task writes checkpoints and queues itself again",
              "S", 10, 3600)
       ->capture_default_str();
   command.add_option("--sbatch", job.sbatch, "Further option of sbatch, such as --sbatch=--mem=2G")

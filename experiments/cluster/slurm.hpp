@@ -23,8 +23,8 @@ std::string unfit_value(std::string_view text);
 /// "/scratch/${USER}", but nothing else that a shell would expand.
 std::string unfit_scratch(const std::string& text);
 
-/// The folder that the text names on this node. Throws UsageError if a variable is not set on this
-/// node, or if the result is not an absolute path.
+/// Replaces the variables in the text by their values on this node. Throws UsageError if a variable
+/// is not set on this node, or if the result is not an absolute path.
 std::filesystem::path scratch_here(const std::string& text);
 
 /// Converts a time limit to seconds: "MM", "MM:SS", "HH:MM:SS", "D-HH", "D-HH:MM" or "D-HH:MM:SS".

@@ -191,7 +191,7 @@ class TreeBuilder : public YAML::EventHandler {
     anchored_[anchor] = node;
   }
 
-  // Counts the values and bytes of a copy, and checks the limits. `depth`: depth of the copy.
+  // Counts the values and bytes of a copied node, and checks the limits. `depth`: of the copy.
   void check_size(const Node& node, Position at, std::size_t depth) {
     count_value(at);
     copied_ += node.text.size() + node.key.size();

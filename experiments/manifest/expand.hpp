@@ -54,7 +54,7 @@ std::vector<FrameRun> planned_runs(const Manifest& manifest, const Scale& scale,
                                    std::span<const Variant> variants);
 
 /// Adds the runs of the plan to `known`, as if all their cycles were computed, so that the `start`
-/// of another manifest can name them.
+/// of another manifest can refer to them.
 void add_as_computed(const Plan& plan, std::vector<Stage>& known);
 
 /// Whether LAMMPS computes any run of the plan.

@@ -18,7 +18,7 @@ namespace shearcell {
 struct StartFile {
   std::string sha256;                   ///< of the file's text; the store keeps the text
   std::optional<LengthUnit> unit = {};  ///< unit of lengths, if the manifest gives one
-  bool settles = false;                 ///< whether the grains settle further
+  bool settles = false;  ///< whether the grains of the file settle before they are used
 };
 
 /// The inputs of a stage, as read from its record (Stage::resolved). Numbers of cycles, and
@@ -29,7 +29,7 @@ struct StageInputs {
   std::string parent;
   std::uint64_t seed = 0;
   Parameters parameters;
-  std::optional<StartFile> file = {};  ///< only if a packing begins with a file
+  std::optional<StartFile> file = {};  ///< set only if the packing is made from a file
 };
 
 /// The stage that makes the packing, from loose grains or from the grains of a file. The result has

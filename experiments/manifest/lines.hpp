@@ -23,9 +23,9 @@ struct ManifestLine {
 std::vector<ManifestLine> manifest_lines(std::string_view text, std::string_view scale,
                                          const nlohmann::json& swept, std::string_view figure);
 
-/// How a shear run differs from its manifest because of --cycles, --seeds or --engine: for each of
-/// "cycles", "seed" and "engine" that differs, {"run": VALUE, "manifest": VALUE}. The manifest's
-/// value of "seed" is a list. Null if nothing differs or the manifest cannot be read.
+/// How a shear run differs from its manifest because of --cycles, --seeds or --engine. Has a key
+/// "cycles", "seed" or "engine" with {"run": VALUE, "manifest": VALUE} if this value differs. The
+/// manifest's seeds are a list. Null if nothing differs or the manifest cannot be read.
 nlohmann::json overrides(std::string_view text, const Place& place, const Ask& ask);
 
 }  // namespace shearcell

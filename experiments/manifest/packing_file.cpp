@@ -76,7 +76,7 @@ struct GrainTable {
 struct Box {
   string_view line;            ///< last line with a part of the box
   Eigen::AlignedBox3d planes;  ///< empty along axes without bounds
-  double lean = 0;             ///< largest component of an edge along another axis
+  double lean = 0;             ///< largest component of an edge perpendicular to its axis
   /// Axes along which LAMMPS fits the box to the grains. A dump's box may be outdated along them.
   std::array<bool, 3> follows{};
 };
@@ -621,7 +621,7 @@ class PackingReader {
                   fmt::format("At most {} columns can be read. Leave out some columns.", most));
     }
     std::vector<Use> uses;
-    std::optional<std::optional<LengthUnit>> unit;  // of the earlier columns
+    std::optional<std::optional<LengthUnit>> unit;  // of the columns read so far
     std::vector<bool> used(table.columns.size());
     for (const auto rank : {Meaning::listed, Meaning::second_best, Meaning::probable}) {
       std::size_t field = 0;
@@ -771,7 +771,7 @@ class PackingReader {
     if (fits || !holds(uses_, kDiameter)) return 1 / expected;
     const string remedy =
         std::fabs(given - in_other) <= kTolerance * in_other
-            ? fmt::format("The number would be right in {}. Is the unit right?", in_m ? "d" : "m")
+            ? fmt::format("The number would fit the unit {}. Is the unit right?", in_m ? "d" : "m")
         : in_m ? fmt::format("The manifest has {:.6g} m. Set `diameter_m`, or scale the file.",
                              expected)
                : "Lengths in d are divided by the diameter, so the diameter must be 1.";

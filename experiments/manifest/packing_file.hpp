@@ -28,7 +28,7 @@ struct PackingFile {
   std::optional<Eigen::Matrix3Xd> velocity;  ///< 3 x N [d/s]
   std::optional<Eigen::AlignedBox3d> box;    ///< [d]; in exports of this program, the wall planes
   LengthUnit unit = LengthUnit::d;           ///< of lengths in the file
-  std::vector<std::string> not_read;         ///< names of columns, sections and keys, at most 100
+  std::vector<std::string> not_read;         ///< unread columns, sections and keys, at most 100
 };
 
 /// Facts about a file that come from the manifest and from the parameters of the run.

@@ -140,8 +140,8 @@ void fields(Scale& scale, const auto& visit) {
                        .example = "{drag_kg_per_s: 1.28e-3}"});
   visit(scale.start,
         {.name = "start",
-         .doc = "initial state, if not loose grains that settle: the state of a recorded run, "
-                "with different noise for each seed, or the grains of a file",
+         .doc = "initial state: the state of a recorded run, with different noise for each seed, "
+                "or the grains of a file. Default: loose grains that settle",
          .example = "{experiment: drag, variant: \"fluid=still\", seed: 3, cycle: 10, noise_d: "
                     "1.0e-13}"});
   visit(scale.seeds,
@@ -151,8 +151,8 @@ void fields(Scale& scale, const auto& visit) {
   visit(scale.checkpoints,
         {.name = "checkpoints",
          .doc = "`every_cycles`: number of cycles between checkpoints, default 1; the last cycle "
-                "always has a checkpoint. `phases`: each of these checkpoints is followed by more "
-                "checkpoints, at these fractions of the next cycle (pause included); default none",
+                "always has a checkpoint. `phases`: after each of these checkpoints, there are "
+                "more at the given fractions of the next cycle (pause included); default none",
          .example = "{every_cycles: 1, phases: [0.25, 0.5, 0.75]}",
          .wanted = "a map of settings"});
   visit(scale.until,
@@ -210,7 +210,7 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
   visit(plot.also, {.name = "y",
                     .doc = "required; a [measure](#measures), with values at checkpoints or one "
                            "value for each run (`onset_size_phi`), or an expression of measures "
-                           "and parameters: `stress_xy_Pa/contact_pressure_Pa`. The caption states "
+                           "and parameters: `stress_xy_Pa/contact_pressure_Pa`. The caption tells "
                            "how many runs end before the onset. A list draws several columns; a "
                            "map also gives them names: `{phi_u: phi_uncorrected, phi: phi}`",
                     .names = can_be_y,
@@ -232,7 +232,7 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
       plot.minus,
       {.name = "minus",
        .doc = "swept values that select one variant. The `y` of this variant, for the same packing "
-              "and cycle, is subtracted. The caption states how many runs have no `y` to subtract",
+              "and cycle, is subtracted. The caption tells how many runs have no `y` to subtract",
        .example = "{steps_per_cycle: 45600}"});
   visit(plot.by,
         {.name = "by",
@@ -284,9 +284,9 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
          .example = "{x: onset_size_cycle, y: onset_size_phi, label: onset}"});
   visit(plot.cycle, {.name = "at_cycle",
                      .range = kCycles,
-                     .doc = "the cycle at which a curve measure is drawn. If `x` has one value for "
-                            "each run, `y` is drawn at this cycle. Default: the last cycle that "
-                            "all runs have; the CSV file and the caption give the cycle"});
+                     .doc = "the cycle to draw, if `y` is a curve for each checkpoint, or if `x` "
+                            "has one value for each run. Default: the last cycle that all runs "
+                            "have; the CSV file and the caption give the cycle"});
   visit(plot.cycles,
         {.name = "cycles",
          .range = kCycles,
@@ -311,7 +311,7 @@ void fields(Placed<ClaimSpec>& claim, const auto& visit) {
   visit(claim.figure,
         {.name = "figure", .doc = "see `figure` of a plot; default: the first part of `id`"});
   visit(claim.compare, {.name = "compare",
-                        .doc = "required; like `y` of a plot, but curve measures are not allowed",
+                        .doc = "required; like `y` of a plot, except measures that are curves",
                         .names = can_be_compared,
                         .terms = terms,
                         .required = true});
@@ -351,8 +351,8 @@ void fields(Placed<ClaimSpec>& claim, const auto& visit) {
         {.name = "margin",
          .range = {0, kInfinity, true},
          .doc = "in the unit of the measure. For `onset_size_cycle` and `reaches`, the margin "
-                "applies to log2 of the ratio of the two waiting times, so 1 means a factor of 2. "
-                "The test is the log-rank test, which includes runs that end before the event"});
+                "limits log2 of the ratio of the two waiting times, so 1 means a factor of 2, and "
+                "the log-rank test is used, which includes runs that end before the event"});
   visit(claim.margin, {.name = "relative_margin",
                        .range = {0, kInfinity, true},
                        .doc = "instead of `margin`: limit of the relative difference; 0.03 means 3 "

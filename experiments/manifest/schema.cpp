@@ -194,8 +194,8 @@ std::span<const Field> schema() {
           "settling ends when the force imbalance of the moving wall and the drag force on this "
           "wall, both divided by P A_w, are below this value"),
       row<&P::settle_kinetic_tolerance>("settle_kinetic_tolerance", "", "1", above(0, 1), kPrepare,
-                                        "settling ends only if the kinetic energy per grain, "
-                                        "divided by P d^3, is also below this value"),
+                                        "settling ends only if, in addition, the kinetic energy "
+                                        "per grain, divided by P d^3, is below this value"),
       row<&P::settle_time_limit_s>(
           "settle_time_limit_s", "", "s", above(0, 1e6), kPrepare,
           "simulated time after which a run fails if its packing has not settled"),
@@ -331,7 +331,7 @@ std::optional<ValueProblem> check_value(const Field& field, const json& value) {
     if (std::ranges::find(field.names, name) != field.names.end()) return std::nullopt;
     return ValueProblem{with_nearest("is unknown", name, field.names), takes(field)};
   }
-  // Other JSON writers may write a real number without a fraction as an integer.
+  // Other JSON writers may write the real number 2.0 as the integer 2.
   if (field.whole ? !value.is_number_integer() : !value.is_number()) {
     return ValueProblem{field.whole ? "is not a whole number" : "is not a number", takes(field)};
   }

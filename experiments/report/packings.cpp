@@ -51,8 +51,8 @@ std::byte byte_of(const GrainField& field, double value) {
 constexpr std::size_t kFactsInPage = 2500;  // facts and profiles of a frame, as JSON [bytes]
 
 struct ChosenRun : Run {
-  std::vector<CheckpointRecord> checkpoints = {};  // fit() keeps only those that the page shows
-  std::size_t bytes = 0;                           // size of one checkpoint in the page
+  std::vector<CheckpointRecord> checkpoints = {};  // after fit() only those that the page shows
+  std::size_t bytes = 0;                           // size of one checkpoint in the HTML page
   std::size_t wall_grains = 0;
 };
 

@@ -66,7 +66,7 @@ struct Content {
   const ReportOptions& options;
   Report& report;
   std::vector<Experiment> experiments = {};
-  json across = json::array();   ///< figures that use several experiments
+  json across = json::array();   ///< figures that use more than one experiment
   json charts = json::object();  ///< by id of the panel
   RunLineages runs = {};
   std::map<std::string, ManifestText> manifests = {};

@@ -125,7 +125,7 @@ struct CachedMeasure {
   DerivedObject object;
 };
 
-/// The cached measures of a checkpoint, for each checkpoint interval (`every`) that is used.
+/// The cached measures of a checkpoint, for each interval in MeasureSources::cadences().
 std::vector<CachedMeasure> cached_measures(const CheckpointRecord& record, DerivedCache& cache,
                                            MeasureSources& sources) {
   sources.read_run(record.run);

@@ -45,9 +45,9 @@ struct MeasureCheck {
 MeasureCheck check_measures(const Store& store, const std::filesystem::path& folder,
                             std::size_t count, std::uint64_t seed);
 
-/// Calls Store::merge(), then copies the cached measures of the sources. If check_measures() finds
-/// an error in a source (sample: three checkpoints), copies no measures from this source. Appends
-/// the errors, and notes on measures that could not be copied, to `refused`.
+/// Calls Store::merge(). Then checks a sample of three checkpoints of each source with
+/// check_measures(), and copies the cached measures of each source without an error. Appends the
+/// errors, and notes on measures that could not be copied, to `refused`.
 std::vector<MergeReport> merge_stores(Store& store,
                                       const std::vector<std::filesystem::path>& sources,
                                       const std::set<std::string>& runs = {},

@@ -54,11 +54,11 @@ struct Outlook {
   std::string unreadable = {};
 };
 
-/// Finds what remains to be computed of a stage. `asks`: the requests of experiments. `stage`: a
-/// recorded or a new stage; its recorded requests may differ from `asks`. `checkpoints`: all
+/// Finds what remains to be computed of a recorded or a new stage. `asks`: the requests of
+/// experiments, which may differ from the recorded requests in `stage`. `checkpoints`: all
 /// checkpoints of the stage except rejected ones, by step (Listed::and_pruned). A completed stage
-/// is also long enough for a request with an `until`, if one of the recorded requests has the same
-/// `until`, at least as many cycles, and a `checkpoint_every` that is a multiple of the requested
+/// needs no more cycles for a request with an `until` if a recorded request has the same `until`,
+/// at least as many cycles, and a `checkpoint_every` that is a multiple of the requested
 /// `checkpoint_every`. Throws StoreDamaged if a request is invalid.
 Outlook outlook(const Stage& stage, std::span<const Ask> asks,
                 std::span<const CheckpointRecord> checkpoints, const KnownMeasures& measures = {});
@@ -93,8 +93,8 @@ std::uint64_t checkpoint_cadence(std::span<const Ask> asks);
 
 // --- Outlooks of the stages of a store or a plan ---
 
-/// outlook() for all recorded requests, without measuring anything: an `until` counts as reached
-/// only if this was recorded. If a request cannot be read, sets Outlook::unreadable.
+/// outlook() for all recorded requests. Measures nothing: an `until` counts as reached only if the
+/// store has recorded that it was reached. Sets Outlook::unreadable if a request cannot be read.
 Outlook look_at(const Store& store, const Stage& stage);
 
 /// A stage of one or more plans, with the store's records of this stage.

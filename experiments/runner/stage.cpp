@@ -592,7 +592,7 @@ bool newest_is_sound(const Store& store, const Stage& stage) {
 
 // --- Recomputing a recorded state ---
 
-// Maps doubles to integers in the same order. The integers of adjacent doubles differ by 1.
+// A larger double gives a larger integer. The integers of adjacent doubles differ by 1.
 std::int64_t ordered_bits(double x) {
   const auto bits = std::bit_cast<std::int64_t>(x);
   return bits >= 0 ? bits : std::int64_t{-1} - (bits & INT64_MAX);

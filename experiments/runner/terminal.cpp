@@ -100,7 +100,7 @@ std::string filled(std::string_view help, std::size_t width) {
   for (const std::string& paragraph : paragraphs) {
     const std::size_t begin = paragraph.find_first_not_of(' ');
     std::size_t indent = begin == paragraph.npos ? 0 : begin;
-    // The last column begins after two or more blanks.
+    // Wrapped lines are indented to the last column, which begins after two or more blanks.
     const std::size_t blanks = indent > 0 ? paragraph.find("  ", indent) : paragraph.npos;
     if (blanks != paragraph.npos) indent = paragraph.find_first_not_of(' ', blanks);
     if (indent + kNarrowest > width) indent = std::min(begin, width / 2);

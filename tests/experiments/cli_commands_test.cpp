@@ -120,8 +120,8 @@ TEST_F(Commands, MergeRejectsConflicts) {
   expect(2, {"merge", "all", "--store", "all"});
   expect(2, {"merge", "nowhere", "--store", "all"});
   expect_refused({"merge", "a", "nowhere", "--store", "new"},
-                 {"nowhere", "no store in this folder to merge"});
-  expect_refused({"merge", "", "--store", "new"}, {"no store in this folder to merge"});
+                 {"nowhere", "this folder contains no store"});
+  expect_refused({"merge", "", "--store", "new"}, {"this folder contains no store"});
   expect_refused({"run", "m.yaml", "--store", ""}, {"--store", "is empty; give a file or folder"});
   {
     // Somebody's own arithmetic: another state for a step that is known.

@@ -74,7 +74,7 @@ TEST_F(Interruption, ByAnotherProgramIsPreventedBetweenDistantCheckpoints) {
           ++taken;
         } catch (const ConcurrencyConflict& conflict) {
           // Or it was completed between the check and the call.
-          if (has(conflict.what(), "another program computes it")) ++refused;
+          if (has(conflict.what(), "another program is computing it")) ++refused;
         }
       }
       std::this_thread::sleep_for(std::chrono::milliseconds(5));

@@ -350,7 +350,7 @@ const std::vector<Parts> kParts = {
      "be 1. The "
      "column R is read as radii. If this is wrong, rename or remove the column."},
     {"a.xyz", with_columns("radius:R:1", "0.0015"),
-     ":3:1: the diameter is 0.003 d. The number would be right in m. Is the unit right?"},
+     ":3:1: the diameter is 0.003 d. The number would fit the unit m. Is the unit right?"},
     // LAMMPS data.
     {"a.data", data("9 0 0 avec\n0 9 0 bvec\n0 0 9 cvec\n", kAtoms),
      ":5:7: gives the box by edge vectors, which cannot be read (got avec). Write the box as xlo "

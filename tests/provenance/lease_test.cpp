@@ -43,7 +43,7 @@ TEST_F(LeaseTest, KeepsOthersFromARunThatIsHeld) {
   EXPECT_THROW(first.start_stage(id_, {}), ConcurrencyConflict) << "it holds the run already";
   expect_refused<ConcurrencyConflict>(
       [&] { second.start_stage(id_, {}); },
-      {"another program computes it", "process " + std::to_string(getpid())});
+      {"another program is computing it", "process " + std::to_string(getpid())});
   const std::vector<Lease> leases = second.leases();
   ASSERT_EQ(leases.size(), 1u);
   EXPECT_EQ(leases[0].run, id_);
@@ -71,7 +71,7 @@ TEST_F(LeaseTest, ExpiresUnlessItIsRenewed) {
     std::this_thread::sleep_for(100ms);
     first.renew_leases();
     expect_refused<ConcurrencyConflict>([&] { second.start_stage(id_, {}); },
-                                        {"another program computes it"});
+                                        {"another program is computing it"});
   }
   std::this_thread::sleep_for(500ms);
   EXPECT_TRUE(first.holds(id_)) << "nobody took it";
@@ -155,7 +155,7 @@ TEST_F(LeaseTest, IsGrantedToOneOfMany) {
       store.start_stage(id_, {});
       ++won;
     } catch (const ConcurrencyConflict& conflict) {
-      EXPECT_TRUE(has(conflict.what(), "another program computes it"));
+      EXPECT_TRUE(has(conflict.what(), "another program is computing it"));
       ++refused;
     }
     while (won + refused < 8) std::this_thread::sleep_for(1ms);
