@@ -114,7 +114,7 @@ void follow(const CrystalliteMap& now, const CrystalliteMap& later, GrowthBySize
   struct Outcome {
     std::int32_t larger = 0, same = 0, smaller = 0;  // grains in crystallites of these sizes
     std::int32_t most = 0;                           // grains shared with crystallite `end`
-    std::size_t end = 0;                             // later crystallite with most of its grains
+    std::size_t end = 0;                             // later crystallite with most shared grains
   };
   std::vector<Outcome> fates(now.size.size());
   struct Origin {

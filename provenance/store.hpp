@@ -45,7 +45,7 @@ struct VerifyReport {
   std::vector<Finding> findings;
   std::uint64_t events = 0;
   std::uint64_t checkpoints = 0;  ///< number of checkpoint files hashed
-  std::uint64_t bytes = 0;        ///< size of these files
+  std::uint64_t bytes = 0;        ///< total size of the hashed files
   std::uint64_t orphans = 0;      ///< files to which no event refers
   Head head;                      ///< head of the log, which can be saved for a later verify()
 
@@ -143,7 +143,7 @@ class Store {
   void reject_checkpoint(const std::string& id, const std::string& sha256, const std::string& why);
 
   /// The newest checkpoint before `before_step` that can be loaded. If `damage` is given, it gets
-  /// an error for each missing or damaged checkpoint, and a writable store rejects them.
+  /// an error for each missing or damaged checkpoint, and a writable store rejects it.
   std::optional<LoadedCheckpoint> newest_valid_checkpoint(
       const std::string& id, std::vector<std::string>* damage = nullptr,
       std::uint64_t before_step = UINT64_MAX);

@@ -134,7 +134,7 @@ pair_coeff * * ${{law}})",
 
   bool fluid_moves() const { return shears_ && fluid_share(scene_.fluid) != 0; }
 
-  // Defines LAMMPS variables for the heights and tilt of the walls. An atom is the moving wall.
+  // Defines LAMMPS variables for heights and tilt of the walls. An atom represents the moving wall.
   void pose() {
     const auto cycle = cycle_steps(task_.drive);
     const double turn = static_cast<double>(task_.drive.steps_per_cycle);
