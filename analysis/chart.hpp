@@ -111,7 +111,7 @@ struct Series {
   SeriesColumns columns = {};
   RowFilter filter = {};
   std::vector<ChartPoint> points = {};  ///< used if `columns.x` is empty
-  /// Number of independent packings behind each point; 0 if the points come from different runs.
+  /// Number of independent packings in each mean; 0 if the points come from different runs.
   std::size_t runs = 0;
   double shift = 0;  ///< added to x in the drawing, so that points with equal x stay visible
 };

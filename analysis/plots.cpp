@@ -393,7 +393,7 @@ void set_curves(const Looks& looks, const NameVariants& names, Panel& panel) {
     for (const auto& [name, value] : key.items()) values.push_back(value);
     ordered.emplace(Place{styles[k], std::move(values), k}, std::move(curve));
   }
-  // If a manifest sets the colour of a curve, no other curve may have this colour.
+  // A colour that a manifest sets for one curve is used for no other curve.
   std::set<std::string> taken;
   for (const SeriesSpec& one : plot.series) taken.insert(plot.listed ? "" : colour_of(one));
   for (auto& [place, curve] : ordered) {

@@ -59,7 +59,7 @@ struct MergeReport {
   Head head;                      ///< head of the source when it was read
   std::uint64_t events = 0;       ///< number of copied events
   std::uint64_t checkpoints = 0;  ///< number of copied files
-  std::uint64_t bytes = 0;        ///< size of these files
+  std::uint64_t bytes = 0;        ///< total size of these files
 };
 
 /// Decodes the checkpoint file `image`. Throws StoreDamaged if the file is damaged or not

@@ -277,7 +277,7 @@ Table sizes_table(std::span<const Amplitude> all) {
   return table;
 }
 
-/// The data behind a verdict: one row for each crystallite or control, and each of cycles_without.
+/// The data of a verdict: one row for each crystallite or control, and each of cycles_without.
 Table fates_of(std::initializer_list<const Amplitude*> amplitudes) {
   Table entered =
       entered_with({"size", "cycles_without", "grown", "gone", "merged", "undecided", "revived"});
