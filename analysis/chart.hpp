@@ -111,7 +111,7 @@ struct Series {
   SeriesColumns columns = {};
   RowFilter filter = {};
   std::vector<ChartPoint> points = {};  ///< used if `columns.x` is empty
-  /// Number of independent packings per point if all points have the same runs; otherwise 0.
+  /// Number of independent packings in each mean; 0 if the points come from different runs.
   std::size_t runs = 0;
   double shift = 0;  ///< added to x in the drawing, so that points with equal x stay visible
 };
@@ -192,7 +192,7 @@ void name_run_counts(Table& table);
 int digits_between(double low, double high);
 std::string digits(double value, int significant = 9);
 
-/// The text without styles. A subscript becomes "v_fluid".
+/// The text without styles. A subscript follows "_", a superscript follows "^".
 std::string plain_text(const Text& text);
 
 /// Whether the chart can draw the point or line. A logarithmic axis shows only positive values.

@@ -76,7 +76,7 @@ ClaimSides sides_of(const ClaimSpec& claim, std::span<const FrameRun> runs);
 /// itself if it has no `for_each`, or if no run has this key.
 std::vector<ClaimSpec> each_of(const ClaimSpec& claim, std::span<const FrameRun> runs);
 
-/// Makes the Claim. Its margin is negative for Relation::lower. `sides`: ClaimSides::names.
+/// Converts to a Claim. For Relation::lower its margin is negative. `sides`: ClaimSides::names.
 Claim stated(const ClaimSpec& claim, const std::array<std::string, 2>& sides);
 
 /// One sentence for each reason why the sides cannot be compared. `planned`: whether the sides hold

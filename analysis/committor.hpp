@@ -37,12 +37,12 @@ struct Followed {
 /// Follows crystallite `label` of maps[0] through the later maps. There is one map for each cycle.
 ///
 /// The first descendant is the crystallite itself. Remembered grains are all grains of descendants
-/// from the last `remembered_cycles` cycles with a descendant. A crystallite C is a descendant if C
-/// has at least `least_descendant` grains and a remembered grain, and does not continue another
-/// crystallite. C continues a crystallite X of the previous cycle, which is no descendant, if C has
-/// more grains of X than remembered grains.
-/// The followed crystallite has merged if there is no descendant, and at least half of the grains
-/// of the last descendants are in one crystallite that continues another crystallite.
+/// from the last `remembered_cycles` cycles with a descendant. A later crystallite C is a
+/// descendant if it has at least `least_descendant` grains, has a remembered grain, and does not
+/// continue a foreign crystallite. A foreign crystallite X existed in the previous cycle and is no
+/// descendant. C continues X if C has more grains of X than remembered grains. The followed
+/// crystallite has merged if there is no descendant and one crystallite, which continues a foreign
+/// crystallite, has at least half of the grains of the last descendants.
 Followed followed(std::span<const CrystalliteMap* const> maps, std::int32_t label);
 
 /// Outcome for a followed crystallite. `undecided`: the clone ends before the outcome is known.

@@ -163,7 +163,7 @@ Crystallites crystallites(const VoronoiDiagram& diagram, std::span<const std::ui
   }
   Crystallites result;
   result.label.assign(count, -1);
-  std::vector<std::int32_t> label_of(count, -1);  // label of each set; index: representative grain
+  std::vector<std::int32_t> label_of(count, -1);  // label of a set, stored at its representative
   for (std::size_t i = 0; i < count; ++i) {
     if (crystalline[i] == 0) continue;
     std::int32_t& label = label_of[sets.find_set(i)];

@@ -112,7 +112,7 @@ std::string words_of_column(const std::string& column);
 /// An empty table for the numbers that enter a verdict. It has the columns group (the run's
 /// variant), seed, packing, and then `columns`.
 Table entered_with(const std::vector<TableColumn>& columns);
-/// Adds the row of a run. `values`: the values of the columns after group, seed and packing.
+/// Adds a row for the run to `entered`. `values`: the values of the columns after `packing`.
 void enter(const FrameRun& run, const TableRow& values, Table& entered);
 
 }  // namespace shearcell

@@ -81,8 +81,8 @@ struct Extent {
   }
 };
 
-/// Ticks of a logarithmic axis that has fewer than two powers of ten: 1, 2 and 5 times a power of
-/// ten. If the highest value is less than four times the lowest, the ticks have equal steps.
+/// Ticks of a logarithmic axis whose data include at most one power of ten: 1, 2 and 5 times powers
+/// of ten. If the highest value is less than four times the lowest, the ticks have equal steps.
 std::vector<std::string> ticks_of_decades(const Extent& data) {
   std::vector<std::string> ticks;
   const bool narrow = data.high < 4 * data.low;

@@ -113,8 +113,8 @@ void follow(const CrystalliteMap& now, const CrystalliteMap& later, GrowthBySize
   }
   struct Outcome {
     std::int32_t larger = 0, same = 0, smaller = 0;  // grains in crystallites of these sizes
-    std::int32_t most = 0;                           // number of grains shared with `end`
-    std::size_t end = 0;                             // later crystallite that shares most grains
+    std::int32_t most = 0;                           // grains shared with crystallite `end`
+    std::size_t end = 0;                             // later crystallite with most shared grains
   };
   std::vector<Outcome> fates(now.size.size());
   struct Origin {
@@ -141,7 +141,7 @@ void follow(const CrystalliteMap& now, const CrystalliteMap& later, GrowthBySize
     if (2 * larger > size) {
       ++(origins[end].size > size ? count.absorbed : count.grew);
     } else if (2 * (size - larger - same) > size) {
-      // Most grains are in smaller crystallites or in none.
+      // More than half of the grains are now in smaller crystallites or in no crystallite.
       ++(2 * smaller > size ? count.shrank : count.vanished);
     }
   }

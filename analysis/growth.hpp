@@ -33,14 +33,14 @@ struct GrowthCount {
 /// Counts by size in grains. Each size that was followed has an entry.
 using GrowthBySize = std::map<std::int32_t, GrowthCount>;
 
-/// Adds to `counts` what happened to each crystallite of `now` until `later`.
+/// For each crystallite of `now`, adds to `counts` whether it had grown, shrunk, ... in `later`.
 void follow(const CrystalliteMap& now, const CrystalliteMap& later, GrowthBySize& counts);
 
 /// Counts over all pairs of a run's checkpoints that are `cycles` apart. One crystallite is counted
 /// at many cycles, so the counts of one run are not independent.
 GrowthBySize growth_of(const FrameRun& run, std::int64_t cycles);
 
-/// delta_rho = rho_g - rho_s = (larger - smaller) / (larger + smaller) in a bin of sizes.
+/// For a bin of sizes: delta_rho = rho_g - rho_s = (larger - smaller) / (larger + smaller).
 struct GrowthRate {
   double size = 0;  ///< geometric mean size of the crystallites in the bin [grains]
   GrowthCount count;

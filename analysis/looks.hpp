@@ -13,7 +13,7 @@
 namespace shearcell {
 
 /// The confidence level of the interval at each look (interim analysis). It is equal for all looks.
-/// All these intervals contain the true value with probability `level` (S. J. Pocock, Biometrika
+/// The probability that all intervals contain the true value is `level` (S. J. Pocock, Biometrika
 /// 64, 191 (1977)). The interval of a look uses Student's quantile for the number of runs at this
 /// look (C. Jennison and B. W. Turnbull, Group Sequential Methods (2000), section 11.4.4). `looks`:
 /// numbers of runs, ascending. Estimates at n and m > n runs have the correlation sqrt(n / m).

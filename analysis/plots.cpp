@@ -56,7 +56,7 @@ bool draws_runs(const PlotSpec& plot) {
 struct Selected {
   const FrameRun* run;
   std::vector<const CheckpointMeasures*> checkpoints = {};
-  /// Runs of the variant PlotSpec::minus with the same packing. Their mean is subtracted.
+  /// Runs of the variant PlotSpec::minus from the same packing as `run`. Their mean is subtracted.
   std::vector<const FrameRun*> partners = {};
 };
 
@@ -271,9 +271,9 @@ struct Group {
   std::vector<const Selected*> runs = {};
 };
 
-/// The curves of a panel. If PlotSpec::by is set, runs with equal values of `by` share a curve.
-/// Otherwise each variant has a curve. Exception: if the plot has panels, or if x has one value for
-/// each run, then runs that differ only in x or in the panel's parameter share a curve.
+/// The curves of a panel. If PlotSpec::by is set, each value of `by` gets a curve. Otherwise each
+/// variant gets a curve, with one exception: if the plot has panels, or if x is one number per run,
+/// then variants that differ only in x or in the panel's parameter share a curve.
 std::vector<Group> groups_of(const PlotSpec& plot, std::span<const Selected> runs) {
   const bool by_variant =
       against(plot) != Against::number_of_run && plot.by.empty() && plot.panel.empty();
@@ -393,7 +393,7 @@ void set_curves(const Looks& looks, const NameVariants& names, Panel& panel) {
     for (const auto& [name, value] : key.items()) values.push_back(value);
     ordered.emplace(Place{styles[k], std::move(values), k}, std::move(curve));
   }
-  // If a manifest sets the colour of a curve, no other curve may have this colour.
+  // A colour that a manifest sets for one curve is used for no other curve.
   std::set<std::string> taken;
   for (const SeriesSpec& one : plot.series) taken.insert(plot.listed ? "" : colour_of(one));
   for (auto& [place, curve] : ordered) {

@@ -73,7 +73,7 @@ struct PlotSpec {
   std::vector<SeriesSpec> series = {};
   std::vector<PublishedSpec> published = {};
   /// Further columns of the CSV. The first `drawn` columns also get a curve. If x and y have one
-  /// value for each run, these columns have the measures of the first checkpoint of the run.
+  /// value for each run, all these columns are evaluated at the first checkpoint of the run.
   std::vector<ColumnSpec> also = {};
   std::size_t drawn = 0;
   std::optional<MarkSpec> mark = {};

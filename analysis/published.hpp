@@ -68,7 +68,7 @@ inline constexpr std::int32_t nucleus_largest = 25;
 /// amplitudes differ by a quarter.
 inline constexpr double margin_critical_size = 0.25;
 /// Margin of the difference between the shares of nuclei in two parts of the cell. The smallest
-/// difference that can be seen in Fig. S7 is 60 % against 40 %.
+/// difference that can be seen in Fig. S7 is the one between 60 % and 40 %.
 inline constexpr double margin_share = 0.2;
 
 }  // namespace shearcell

@@ -19,7 +19,7 @@ json values_of(const json& variant, std::span<const std::string> keys) {
   return values;
 }
 
-/// Rank of a variant's values among the `count` different values of all variants.
+/// `count`: number of different sets of values. `rank`: index of one variant's set when sorted.
 struct Rank {
   std::size_t rank = 0;
   std::size_t count = 0;

@@ -46,9 +46,9 @@ struct SiteImage {
 struct alignas(64) Tetrahedron {
   std::array<std::int32_t, 4> vertex;     // index of each corner in point_; -1: at infinity
   std::array<std::int32_t, 4> neighbour;  // tetrahedron opposite to each corner
-  Eigen::Vector3d centre;                 // circumcentre; unset if no corner is a measured site
-  std::uint8_t beyond;                    // bit w is 1: the centre is not inside wall w
-  std::uint8_t edges_done;                // one bit per edge, 1 after its face was measured
+  Eigen::Vector3d centre;                 // circumcentre, set if a corner is a measured site
+  std::uint8_t beyond;                    // bit w is 1: the centre is on or beyond wall w
+  std::uint8_t edges_done;                // a bit for each edge whose face was measured
 };
 
 constexpr std::array<std::array<std::uint8_t, 2>, 6> edges = {
@@ -336,10 +336,10 @@ class Tessellation {
     } while (k != start);
   }
 
-  /// Returns twice the vector area of the part of a face that lies inside the walls in `beyond`.
-  /// Also adds the contributions of the face's sides on walls to the areas of the wall faces of
-  /// both cells. The area of a wall face is the integral of -z du along its border, where u is
-  /// horizontal. Sides along the edges of the box contribute nothing, since u is constant there.
+  /// Clips a face at the walls in `beyond` and returns twice the vector area of the rest. A side of
+  /// the rest that lies on a wall is also a side of a wall face of both cells, and is added to the
+  /// areas of these wall faces. The area of a wall face is the integral of -z du along its border,
+  /// where u is the coordinate along the wall, normal to z. At the edges of the box du is 0.
   Eigen::Vector3d clip(std::size_t start, std::int32_t a, std::int32_t b, unsigned beyond) {
     polygon_.clear();
     walk_around(start, a, b, [&](const Tetrahedron& t, std::uint8_t) {

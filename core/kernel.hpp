@@ -81,7 +81,7 @@ struct StepTask {
   /// Prefetch distance in rows, see CellOrder::ahead(); 0 disables the prefetch.
   std::size_t ahead = 0;
   double* next_rows = nullptr;   ///< output: positions at the next step
-  double* velocity[3] = {};      ///< [d/s] half a step before `rows`, updated to half a step after
+  double* velocity[3] = {};      ///< [d/s] in: half a step before `rows`; out: half a step after
   double velocity_factor = 0;    ///< (1 - b dt / 2m) / D
   double contact_kick = 0;       ///< dt k/m / D [1/s]
   double gravity_step = -0.0;    ///< -dt g / D [d/s], added to v_y; the default -0 changes no bit
@@ -132,7 +132,7 @@ struct PruneTask {
   std::size_t inner_stride = 0;                 ///< largest number of slots of a block
   std::uint32_t* begin = nullptr;               ///< list start of each block, as in NeighbourRows
   std::uint16_t* inner_count = nullptr;         ///< length of the list of each lane
-  std::uint16_t* other_slots = nullptr;         ///< one entry per block, as in the next two arrays
+  std::uint16_t* other_slots = nullptr;         ///< one entry per block, like the next two arrays
   std::uint16_t* moving_wall_slots = nullptr;
   std::uint8_t* near = nullptr;
   std::uint8_t* grain_near = nullptr;  ///< like `near`, but for each grain and spare lane
@@ -140,8 +140,8 @@ struct PruneTask {
   double depth = 0, per_depth = 0;
 };
 
-/// One implementation of the loops. `step` returns a positive number if a grain is farther from its
-/// `reference` than its margin minus margin_loss.
+/// One implementation of the loops. `step` returns a positive number if a grain has moved too far
+/// from its `reference`, by more than its margin minus margin_loss.
 struct Kernels {
   const char* name;
   std::size_t lanes;

@@ -50,7 +50,7 @@ class Reference {
   double moved(const double* rows, std::size_t grain, const WallPose& pose) const;
   /// Upper bound of moved() [d] for all wall grains and wall planes.
   double wall_moved(const WallPose& pose) const;
-  /// Part of each margin [d] that is lost to the shear since set() and to rounding of positions.
+  /// Part of each margin [d] that the shear since set() and the rounding of positions use up.
   double margin_loss(double tan_theta) const;
 
   /// Height [d] at which the moving frame is at rest.

@@ -315,9 +315,9 @@ void Simulation::rebuild_lists(const Drive& drive) {
   ++counts_.builds;
 }
 
-// Sorts the grains by grid cell, so that neighbours are close together in memory. Each stretch of
-// 256 grains is then sorted by flags (near a wall or the periodic boundary) and number of
-// neighbours. So the grains of a vector need the same branches and have lists of similar length.
+// Sorts the grains by grid cell, so that neighbours are close together in memory. Then sorts each
+// group of 256 grains by flags (near a wall or the periodic boundary) and number of neighbours. So
+// grains that share a vector need the same branches and have neighbour lists of similar length.
 void Simulation::sort_memory() {
   constexpr std::size_t kStretch = 256;
   const auto first_grain = static_cast<std::int32_t>(walls_.active().size());

@@ -56,9 +56,9 @@ class Simulation {
   /// and velocities differ, or if the cell is too shallow for the cutoffs of the neighbour lists.
   Simulation(Cell cell, const Scene& scene, const State& state, SimulationSettings settings = {});
 
-  /// Advances by `steps` time steps. The watchdog runs at step 0, at every 1024th step and, without
-  /// the time-step check, at the end of each cycle. It runs at no other step, because a failure
-  /// must not depend on where the run was recorded or continued. Throws NumericalFailure.
+  /// Advances by `steps` time steps. The watchdog runs at step 0 and every 1024 steps. It also runs
+  /// at the end of each cycle, without the time-step check. It runs at no other step, because a
+  /// failure must not depend on where the run was recorded or continued. Throws NumericalFailure.
   void advance(const Drive& drive, std::uint64_t steps);
 
   /// Runs all watchdog checks now, except the time-step check. Throws NumericalFailure.

@@ -294,11 +294,11 @@ void require_plausible(const Checkpoint& checkpoint) {
   }
   if (std::abs(checkpoint.theta) > kSteepest) refuse("/restart/theta", "is not a plausible tilt");
   if (!(checkpoint.state.position.array().abs() <= kFarthest).all()) {
-    refuse("/restart/position", "has a grain far outside of any cell");
+    refuse("/restart/position", "has a grain at an implausible position");
   }
   for (const WallGrain& grain : cell.wall_grains) {
     if (grain.position.cwiseAbs().maxCoeff() > kFarthest) {
-      refuse("/restart/cell/wall_grain_position", "has a grain far outside of any cell");
+      refuse("/restart/cell/wall_grain_position", "has a grain at an implausible position");
     }
   }
 }

@@ -45,7 +45,7 @@ struct VerifyReport {
   std::vector<Finding> findings;
   std::uint64_t events = 0;
   std::uint64_t checkpoints = 0;  ///< number of checkpoint files hashed
-  std::uint64_t bytes = 0;        ///< size of these files
+  std::uint64_t bytes = 0;        ///< total size of the hashed files
   std::uint64_t orphans = 0;      ///< files to which no event refers
   Head head;                      ///< head of the log, which can be saved for a later verify()
 
@@ -59,7 +59,7 @@ struct MergeReport {
   Head head;                      ///< head of the source when it was read
   std::uint64_t events = 0;       ///< number of copied events
   std::uint64_t checkpoints = 0;  ///< number of copied files
-  std::uint64_t bytes = 0;        ///< size of these files
+  std::uint64_t bytes = 0;        ///< total size of these files
 };
 
 /// Decodes the checkpoint file `image`. Throws StoreDamaged if the file is damaged or not
@@ -100,14 +100,14 @@ class Store {
 
   /// Stores the text of a file of grains, only once, and returns its SHA-256.
   std::string register_packing(std::string_view text, std::string_view path);
-  /// The text of the file of grains with this SHA-256, and its path when it was registered. Throws
-  /// StoreDamaged if the store lacks the text.
+  /// The text of the file of grains that has this SHA-256, and the path that register_packing()
+  /// recorded. Throws StoreDamaged if the store lacks the text.
   std::pair<std::string, std::string> packing_text(const std::string& sha256) const;
 
-  /// Records a membership if the store lacks it, if it has a larger target or another checkpoint
-  /// interval, or if another stage was declared later for its place. A larger target makes a
-  /// completed stage `declared` again. Throws std::invalid_argument when the id is not a
-  /// SHA-256 or belongs to other parameters, or when the parent was not declared.
+  /// Records a membership in three cases: it is new, the store has it with a smaller target or
+  /// another checkpoint interval, or another stage was declared later for its place. A larger
+  /// target makes a completed stage `declared` again. Throws std::invalid_argument when the id is
+  /// no SHA-256 or was recorded with other parameters, or when the parent was not declared.
   void declare_stage(const Stage& stage);
 
   /// Starts an attempt and returns its number, from 1. With `from_sha256` the attempt continues
@@ -142,8 +142,8 @@ class Store {
   /// Marks the checkpoint as rejected, so that it is not used. Its file is kept.
   void reject_checkpoint(const std::string& id, const std::string& sha256, const std::string& why);
 
-  /// The newest checkpoint before `before_step` that can be loaded. If `damage` is given, appends
-  /// the errors of missing and damaged checkpoints and, if the store is writable, rejects these.
+  /// The newest checkpoint before `before_step` that can be loaded. If `damage` is given, it gets
+  /// an error for each missing or damaged checkpoint, and a writable store rejects it.
   std::optional<LoadedCheckpoint> newest_valid_checkpoint(
       const std::string& id, std::vector<std::string>* damage = nullptr,
       std::uint64_t before_step = UINT64_MAX);

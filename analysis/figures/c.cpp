@@ -75,9 +75,9 @@ struct AmplitudeGrowth {
   GrowthCurve curve;
   std::optional<Estimate> without_absorbed;
   std::optional<Estimate> without_vanished;
-  Interval repeated;  ///< 90 % interval of the critical size in studies with published_runs runs
+  Interval repeated;  ///< critical size in 90 % of repeated studies with published_runs runs
 
-  /// Growth over the supplement's n_bin cycles.
+  /// Growth over n_bin cycles, the time for which the supplement follows a crystallite.
   const GrowthAfter& published_bin() const { return after.at(published->n_bin); }
 };
 

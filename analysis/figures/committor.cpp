@@ -29,7 +29,7 @@ constexpr std::size_t chosen_rule = 1;  ///< index of cycles_gone
 /// only if the smallest crystallites grow more often than the controls. [choice]
 constexpr double rare = 0.1;
 
-/// Number of clones in which a crystallite has each outcome (Fate).
+/// For each outcome (Fate) of a crystallite, the number of clones.
 struct Fates {
   std::array<std::size_t, 4> clones = {};  ///< indexed by Fate
   std::size_t revived = 0;  ///< clones with fate `gone` in which a descendant grew later
@@ -64,7 +64,7 @@ struct Amplitude {
   double published = 0;  ///< the supplement's critical size
   std::vector<Subject> crystallites = {}, controls = {};
   std::size_t states = 0;
-  std::size_t left_out = 0;  ///< states not used: they begin with a crystallite of grown_size
+  std::size_t left_out = 0;  ///< unused states: a crystallite already has grown_size grains
 };
 
 /// The crystallite maps of cycles 0, 1, 2, ... up to the first missing map.
@@ -277,7 +277,7 @@ Table sizes_table(std::span<const Amplitude> all) {
   return table;
 }
 
-/// The data behind a verdict. A crystallite or control has one row per value of cycles_without.
+/// The data of a verdict: one row for each crystallite or control, and each of cycles_without.
 Table fates_of(std::initializer_list<const Amplitude*> amplitudes) {
   Table entered =
       entered_with({"size", "cycles_without", "grown", "gone", "merged", "undecided", "revived"});

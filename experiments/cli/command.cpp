@@ -232,7 +232,7 @@ std::vector<Stage> known_runs(const Context& context) {
   try {
     if (const auto store = open_if_there(context.store)) return store->stages();
   } catch (const std::exception&) {
-    // The command itself opens or creates the store next, and then reports the error.
+    // Not reported here: the command opens the store once more and then reports the error.
   }
   return {};
 }

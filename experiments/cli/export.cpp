@@ -101,8 +101,8 @@ CycleRange parse_cycles(const std::string& text) {
   return range;
 }
 
-// Returns the requests (cycles, `until`, checkpoints) of experiments for this run: of all
-// experiments if the user named the run by its id, else only of the selected experiments.
+// Returns what experiments request of this run: cycles, `until` and checkpoints. If the user gave
+// the id of the run, all experiments count, otherwise only the selected experiments.
 std::vector<Ask> asks_of(const PlacedRun& run) {
   return asks_of(run.places.empty() ? run.stage.memberships : run.places);
 }

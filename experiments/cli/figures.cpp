@@ -177,10 +177,10 @@ std::string about_figures() {
       R"(Draws the figures, plots and claims of the store's manifests, once for each experiment that lists
 them. Writes into DIR/EXPERIMENT/SCALE the CSV, SVG, PDF and gnuplot script of each panel,
 NAME.caption.txt, NAME.verdict.json (verdicts on claims) and NAME.lineage.json (the checkpoints
-behind the figure). SCALE is `base` for a manifest without scales. Figures that combine all
+that the figure uses). SCALE is `base` for a manifest without scales. Figures that combine all
 experiments are written into DIR/SCALE. Without names, table1 is drawn if a manifest lists any of
 the figures below, and summary is drawn if the store has two of the experiments that it combines.
-If the number of runs behind a mean changes along a curve, the key of the drawing shows the smallest
+If the number of runs in a mean changes along a curve, the key of the drawing shows the smallest
 and largest number. If all curves have the same numbers, the caption shows them.
 Measures are cached in the store's derived.sqlite. If you delete this file, all measures are
 computed again, except those of pruned checkpoints (see `regenerate`). From a store that cannot be

@@ -484,14 +484,14 @@ void add_show(CLI::App& app, Context& context) {
       ->add_option("name", options->name,
                    "Run id, checkpoint SHA-256 (or a unique beginning), figure, or figure file")
       ->required();
-  command->add_flag("--checkpoints", options->list, "List every checkpoint behind a figure");
+  command->add_flag("--checkpoints", options->list, "List every checkpoint that a figure uses");
   add_common_options(
       *command, context,
       R"(For a figure: prints its files, manifest lines, runs, seeds, attempts, builds, hosts and cycles.
 Checks that the log contains the states from which the figure was made; if not, the exit code is 4.
 For a file of a figure (CSV, SVG or lineage): checks that the store recorded a file with these bytes
-and that every checkpoint behind the file is intact; if not, the exit code is 4. Pruned checkpoints
-are counted, but they are not an error.
+and that every checkpoint that the file uses is intact; if not, the exit code is 4. Pruned
+checkpoints are counted, but they are not an error.
 With --json, `parameters` has the parameters that affect the run. `resolved` is the stored record,
 whose hash is the run's id. Some parameters that do not affect the run (such as
 max_overlap_diameters) have fixed values in this record.

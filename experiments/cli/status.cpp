@@ -150,7 +150,7 @@ Facts facts(const PlacedRun& listed, const Membership& shown, const View& view) 
 struct Estimate {
   Work work;
   std::size_t at_a_time = 1;  ///< number of stages computed at a time
-  bool running = false;       ///< whether a run is being computed; if not, all cores are assumed
+  bool running = false;       ///< whether a run is computed now; if not, the time is for all cores
   bool at_most = false;       ///< the time is an upper limit: `until` may end runs early
 
   double seconds() const { return work.seconds(at_a_time); }

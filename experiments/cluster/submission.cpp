@@ -382,7 +382,7 @@ std::string describe(const Submission& s) {
       "submission {}: job {}, {} of {} tasks in the queue{}", s.id,
       s.job.empty() ? s.queue.front().job : s.job,
       states.empty() ? "none" : fmt::format("{}", fmt::join(states, ", ")), s.tasks.size(),
-      merge_job.empty() ? "" : fmt::format("; job {} will merge their stores", merge_job));
+      merge_job.empty() ? "" : fmt::format("; job {} will merge the task stores", merge_job));
 }
 
 }  // namespace shearcell

@@ -62,9 +62,9 @@ struct Proposal {
   double seconds(const Share& share) const;
 };
 
-/// Leaves out a packing and all its runs if `busy` contains the packing or one of its runs. If
-/// `job.cpus` is 0, each task gets the cores that the share with the most runs needs to compute all
-/// its runs in parallel, but at most 16 cores (or `job.threads` if this is more than 16).
+/// Divides the packings of the plans, each with all its runs, into shares. A packing is left out if
+/// `busy` contains it or one of its runs. If `job.cpus` is 0, each task gets enough cores to
+/// compute all runs of any share in parallel, but at most 16 (or `job.threads` if larger).
 Proposal propose(const std::vector<Plan>& plans, const Store* store,
                  const std::set<std::string>& busy, std::size_t most_tasks, JobOptions job);
 

@@ -25,8 +25,8 @@ FrameWriter h5md_writer(const std::filesystem::path& file, std::size_t frames);
 /// scalars. Readers require chemical symbols: species H is a grain, He a wall grain. The column
 /// `wall_side` is ExportedState::type; OVITO would read a column `type` as a second species. A text
 /// that ASE or OVITO would read as a number or a logical value gets single quotes: 'T' for an
-/// experiment named T. `unit`: metres, or grain diameters d because OVITO and ASE expect lengths of
-/// order 1. The key `d_m` gives d in metres.
+/// experiment named T. `unit`: metres or grain diameters d. OVITO and ASE expect lengths of order
+/// 1, such as lengths in d. The key `d_m` gives d in metres.
 FrameWriter extxyz_writer(const std::filesystem::path& file, LengthUnit unit);
 
 /// A folder with frames.pvd, which lists all frames, and two files for each frame: grains_CYCLE.vtp

@@ -345,7 +345,7 @@ WantedFigures wanted_figures(const Store& store, const std::vector<std::string>&
   for (const Figure& figure : all_figures()) {
     if (!is_across(figure) || manifests.empty() || !asked(figure.name)) continue;
     // Without `names`, table1 is drawn if a manifest lists figures of the supplement, and a figure
-    // that compares experiments is drawn if the store has at least two of these experiments.
+    // that compares experiments is drawn if the store has two or more experiments that it compares.
     const auto lists_any = [](const ReadManifest& one) { return !one.figures.empty(); };
     const auto registers = [&](const std::string& of) { return among(registered, of); };
     const bool has_runs = figure.of.empty() ? std::ranges::any_of(manifests, lists_any)

@@ -64,8 +64,8 @@ WantedFigures wanted_figures(const Store& store, const std::vector<std::string>&
 std::string leave_out_unselected(const Store& store, const RunSelection& runs,
                                  std::vector<WantedFigure>& figures);
 
-/// Returns the newest_runs() of `selected`, without checkpoints. Adds to `notes` lines on the
-/// runs that are left out. In runs on which the key `pressure_at` has no effect, the key is set to
+/// Returns the newest_runs() of `selected`, without checkpoints. If runs are left out, adds lines
+/// about them to `notes`. In runs on which the key `pressure_at` has no effect, the key is set to
 /// `top`.
 std::vector<FrameRun> frame_runs(std::vector<Run> selected, std::vector<std::string>& notes);
 

@@ -90,7 +90,7 @@ nlohmann::json lineage_of(const ComputedFigure& figure, const std::string& plots
   return facts;
 }
 
-/// Records the figure, unless its newest record differs only in host and build.
+/// Records the figure, unless its newest record has the same facts, apart from host and build.
 void record(Store& store, const std::string& name, nlohmann::json facts) {
   for (const FigureRecord& known : store.figures()) {
     if (known.name == name && lineage_text(known.provenance) == lineage_text(facts)) return;

@@ -12,16 +12,16 @@
 
 namespace shearcell {
 
-/// Checks the number of runs, `looks` and `labels` and, for each variant at each scale, time steps,
-/// cell, `start` and `phases`. The manifest must come from read_manifest(). Throws ManifestError.
+/// Checks the number of runs, `looks` and `labels`. For each variant at each scale, also checks the
+/// time steps, cell, `start` and `phases`. `manifest`: from read_manifest(). Throws ManifestError.
 void check_variants(const Manifest& manifest);
 
 /// Why LAMMPS cannot compute these runs; "" if it can, or if LAMMPS is not the engine.
 std::string unfit_for_lammps(const Parameters& parameters, const Checkpoints& checkpoints);
 
-/// Returns warnings about the variants in `planned`, one line each. They concern parameters that
-/// make settling fail, are outside the advised range, or have no effect on any variant; figures,
-/// plots and claims that will have no data; and entries of `primary` that are not ids of claims.
+/// Returns warnings about the variants in `planned`, one line each. Reasons: a parameter makes
+/// settling fail, is outside the advised range, or has no effect on any variant; a figure, plot or
+/// claim will have no data; an entry of `primary` is not the id of a claim.
 /// `all`: all variants of the scale.
 std::vector<std::string> warnings_of(const Manifest& manifest, const Scale& scale,
                                      std::span<const Variant> all, std::span<const Variant> planned,

@@ -106,8 +106,8 @@ void fields(Start& start, const auto& visit) {
         {.name = "scale", .doc = "scale of the recorded run; default: the scale of this run"});
   visit(start.variant,
         {.name = "variant",
-         .doc = "swept values that select a variant of the recorded experiment; default: the "
-                "values of this run for the keys that both experiments sweep",
+         .doc = "swept values that select the variant of the recorded run; default: for each "
+                "key that both experiments sweep, the value of this run",
          .example = "\"fluid=still\"",
          .longest = kLongestLabel});
   visit(start.run, {.name = "checkpoint",
@@ -387,7 +387,7 @@ void fields(Placed<ClaimSpec>& claim, const auto& visit) {
         {.name = "cannot_be_decided",
          .doc = "the reason why no number of runs would decide the claim. The verdict is then "
                 "`cannot be decided`, with this reason and the measured numbers",
-         .example = "the published number scatters by more than the margin",
+         .example = "the error of the published number is larger than the margin",
          .longest = 300});
 }
 
@@ -1426,9 +1426,9 @@ struct Reader {
     return list == nullptr ? std::span<const Node>() : list->parts;
   }
 
-  // Reports names of plots, claims, figures or panels that occur twice, or that a figure or panel
-  // of the supplement already has. A manifest may define parts of a figure of the supplement if the
-  // manifest does not list this figure in `figures` (`listed`).
+  // Reports each plot, claim, figure and panel whose name occurs twice or is already the name of a
+  // figure or panel of the supplement. If a figure of the supplement is not in `figures`
+  // (`listed`), the manifest may define parts of this figure.
   void check_own_names(const Node& document, std::span<const Figure> supplement,
                        const std::vector<string>& listed) {
     std::vector<std::pair<const Node*, string>> names, figures;  // {node, its figure}

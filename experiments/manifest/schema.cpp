@@ -247,7 +247,7 @@ std::span<const Field> schema() {
                                  "under protocol stiffen: number of powers of ten by which the "
                                  "stiffness increases (B.2); a larger value extends a run"),
       row<&P::stiffness_steps_per_decade>("stiffness_steps_per_decade", "", "1", {1, 100}, kStiffen,
-                                          "number of equal steps for each power of ten (B.2)"),
+                                          "number of steps that raise the stiffness tenfold (B.2)"),
       row<&P::minimize_force_tolerance>(
           "minimize_force_tolerance", "", "1", above(0, 1), kStiffen,
           "after each step the enthalpy is minimized until the largest net force on a grain, "

@@ -98,8 +98,8 @@ State state_in(const Cell& cell, const PackingFile& grains, const std::string& p
            fits_better ? fmt::format("Is the unit of the lengths right? With lengths in {}, the "
                                      "size would be {:.4g} d.",
                                      in_m ? "d" : "m", in_other)
-           : fraction  ? fmt::format("Write `nominal_packing_fraction: {:.10g}`. With this "
-                                      "height_over_width, it gives the cell this width and depth.",
+           : fraction  ? fmt::format("Write `nominal_packing_fraction: {:.10g}`. The cell "
+                                      "then fits the file, if height_over_width is not changed.",
                                      *fraction)
                        : "Use a file with a box of another size.");
   }

@@ -156,7 +156,7 @@ std::optional<FigureRecord> recorded_as(const Store& store, const ComputedFigure
     json facts = record.provenance;
     if (!facts.is_object()) continue;
     facts.erase("made");
-    facts["outputs"] = json::object();  // empty, as in figure.lineage
+    facts["outputs"] = json::object();  // figure.lineage lists no outputs
     if (facts == figure.lineage) newest = std::move(record);
   }
   return newest;

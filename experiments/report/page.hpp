@@ -20,7 +20,7 @@ struct ReportOptions : MeasureOptions {
   ReadProgress encoded = {};  ///< called after each encoded packing
 };
 
-/// Whether this program was built with the front end, which needs Node.
+/// Whether this program contains the front end of the report. Building the front end needs Node.
 bool has_front_end();
 
 /// A page. MeasureOutcome lists the checkpoints that figures, tables and packings leave out.

@@ -315,7 +315,7 @@ std::vector<MergeReport> merge_stores(Store& store,
                                       std::vector<Finding>* refused) {
   constexpr std::size_t kSampled = 3;
   std::vector<MergeReport> reports = store.merge(sources, runs);
-  const std::uint64_t seed = seed_of(store.head());  // the sources cannot predict it
+  const std::uint64_t seed = seed_of(store.head());  // a forged source cannot predict the sample
   for (const std::filesystem::path& source : sources) {
     MeasureCheck check = check_measures(store, source, kSampled, seed);
     if (check.findings.empty()) {

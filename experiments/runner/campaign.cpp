@@ -153,7 +153,7 @@ class Campaign {
  private:
   struct Job : StageJob {
     JobState state = JobState::waiting;
-    Clock::time_point check_at = {};  // time of the next check of a held job
+    Clock::time_point check_at = {};  // when to check next whether the other process is done
     int losses = 0;                   // number of attempts that ended with StageOutcome::lost
   };
 
@@ -278,7 +278,7 @@ class Campaign {
     const Stage stage = store_.stage(job.id);
     if (is_done(store_, stage)) {
       finish(job, was_held ? &CampaignResult::elsewhere : &CampaignResult::already,
-             was_held ? "done by another process" : "", true);
+             was_held ? "completed by another process" : "", true);
       return JobState::done;
     }
     if (held_by_another(job.id)) return put_off(job);

@@ -331,7 +331,7 @@ void measure_from(const Store& store, const Stage& stage, std::span<const Ask> a
   if (!chosen.front().lacking.empty()) refuse_unread(first);
   for (CheckpointMeasures& one : chosen) {
     if (!one.lacking.empty()) continue;
-    // A number that the checkpoint lacks becomes NaN, which never reaches the value of `until`.
+    // If the checkpoint lacks a number, it is set to NaN, which never fulfils an `until`.
     for (const std::string& name : wanted) one.measures.numbers.try_emplace(name, std::nan(""));
     measures[one.sha256] = std::move(one.measures);
   }

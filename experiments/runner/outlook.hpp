@@ -39,11 +39,11 @@ struct Outlook {
   double end = 0;
   /// Whether the stage may end before `end`: an `until` was not reached yet, but still may be.
   bool may_end_early = false;
-  /// How `until` ended the stage at its last checkpoint, as RunCompleted records it; null if no
-  /// `until` ended it. {"by": "until", "measure", "value", "extra_cycles", "reached_at_cycle",
+  /// Null, or how an `until` ended the stage at its last checkpoint, in the form of the event
+  /// RunCompleted: {"by": "until", "measure", "value", "extra_cycles", "reached_at_cycle",
   /// "memberships"}.
   nlohmann::json ended = nullptr;
-  /// The first checkpoint whose measures are unknown and may fulfil an `until`.
+  /// The first checkpoint that may fulfil an `until`, but was not measured yet.
   std::optional<CheckpointRecord> undecided = {};
   // The remaining work: upper bounds for a shear, estimates for other kinds of stages.
   double checkpoints = 0;
@@ -67,7 +67,7 @@ Outlook outlook(const Stage& stage, std::span<const Ask> asks,
 /// unreadable record, which `verify` reports.
 std::optional<Drive> shear_drive(const Stage& stage);
 
-/// When checkpoints of a shear are due, for each request of at least one cycle. Throws
+/// Returns, for each request of at least one cycle, when a shear must record checkpoints. Throws
 /// StoreDamaged if a request is invalid.
 std::vector<CheckpointCadence> cadences_of(const Stage& stage, std::span<const Ask> asks,
                                            const Drive& drive);

@@ -263,7 +263,7 @@ class OwnEngine final : public Engine {
     const std::uint64_t steps = std::min(most, chunk_steps(simulation_.grains()));
     const double before = thread_seconds();
     progress_ = plan_.protocol.advance(simulation_, steps);
-    core_seconds_ += threads_ * (thread_seconds() - before);  // all threads work for the same time
+    core_seconds_ += threads_ * (thread_seconds() - before);  // assumes equally busy threads
     return progress_;
   }
   StageProgress halt() override {

@@ -47,8 +47,8 @@ enum class Durability {
 };
 
 /// Deletes the temporary files and folders that killed programs left in `folder` and, if `below` is
-/// true, in its subfolders. Their names are ".tmp-<pid>-*" or ".*.tmp-<pid>-*". One is deleted only
-/// if process <pid> has ended and no process, for example in another container, has locked it.
+/// true, in its subfolders. Their names are ".tmp-<pid>-*" or ".*.tmp-<pid>-*". A file or
+/// folder is kept while process <pid> runs or any process, perhaps in a container, has locked it.
 void remove_leftovers(const std::filesystem::path& folder, bool below = false);
 
 /// Writes `bytes` to a temporary file in the open `folder`, named `temporary` + "<pid>-<n>", with

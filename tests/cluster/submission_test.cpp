@@ -257,7 +257,7 @@ TEST(Described, NamesTheArrayWhileOnlyTheMergeJobWaits) {
   made.queue = {{made.merge_name(), "18", {}, "PENDING", "Dependency", ""}};
   EXPECT_EQ(
       describe(made),
-      "submission 0123456789ab: job 17, none of 4 tasks in the queue; job 18 will merge their "
+      "submission 0123456789ab: job 17, none of 4 tasks in the queue; job 18 will merge the task "
       "stores");
   made.job = "";  // a crash before it was recorded
   made.queue.insert(made.queue.begin(), {made.name(), "17", 1, "RUNNING", "", "node7"});

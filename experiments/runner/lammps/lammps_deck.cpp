@@ -134,7 +134,7 @@ pair_coeff * * ${{law}})",
 
   bool fluid_moves() const { return shears_ && fluid_share(scene_.fluid) != 0; }
 
-  // The moving plane has the height of the moving wall's atom. The tilt depends on the step number.
+  // Defines LAMMPS variables for heights and tilt of the walls. An atom represents the moving wall.
   void pose() {
     const auto cycle = cycle_steps(task_.drive);
     const double turn = static_cast<double>(task_.drive.steps_per_cycle);
@@ -316,8 +316,8 @@ fix drag grains addforce v_drag_x v_drag_y v_drag_z)",
         task_.end);
   }
 
-  // Output during one cycle, or during one second for a packing. It is defined before the first
-  // `run`: otherwise a second setup would be needed and would use changed velocities for the drag.
+  // Defines the output: during one cycle of a shear, or one second of a packing. It comes before
+  // the first `run`: later output would need a second setup, with changed velocities for the drag.
   void watching(std::string_view name) {
     const auto steps = shears_ ? cycle_steps(task_.drive)
                                : static_cast<std::uint64_t>(std::nearbyint(1 / scene_.time_step));
