@@ -32,7 +32,7 @@ struct Estimator {
   /// Its claims compare measures of whole runs (true), of checkpoints (false), or either (empty).
   std::optional<bool> of_run = false;
   bool over_variants = false;  ///< a group of runs may contain several variants
-  bool one_side = false;       ///< its claims have one group, even without a published number
+  bool one_side = false;       ///< a claim has one group of runs, even without a published number
   /// Returns how to compute one number per run. The mean of these numbers over the runs, or the
   /// difference of the means of two groups, is then estimated. If null, `decide` gives the verdict.
   Scalar (*scalar)(const ClaimSpec& claim) = nullptr;
@@ -44,7 +44,7 @@ struct Estimator {
 
 /// All estimators that claims can use, in the order of REFERENCE.md.
 std::span<const Estimator> all_estimators();
-/// The estimator that the claim names, or that its keys imply.
+/// The estimator given by the claim's key `estimator` or, without this key, by its other keys.
 const Estimator& estimator_of(const ClaimSpec& claim);
 /// mean_over_cycles for a claim with `cycles`, mean_over_phi with `phi`, else number_of_the_run.
 const Estimator& estimator_by_keys(const ClaimSpec& claim);

@@ -18,10 +18,10 @@ namespace shearcell {
 /// What happened to the crystallites of one size. A crystallite is counted at most once. It is not
 /// counted if, for example, most of its grains are in a crystallite of the same size.
 struct GrowthCount {
-  std::size_t grew = 0;  ///< more than half of the grains are in larger crystallites
+  std::size_t grew = 0;  ///< more than half of its grains are later in larger crystallites
   /// Like `grew`, but the main contributor to the later crystallite was a larger crystallite.
   std::size_t absorbed = 0;
-  std::size_t shrank = 0;    ///< more than half of the grains are in smaller crystallites
+  std::size_t shrank = 0;    ///< more than half of its grains are later in smaller crystallites
   std::size_t vanished = 0;  ///< not in `shrank`, but most grains are in smaller or no crystallites
 
   std::size_t larger() const { return grew + absorbed; }     ///< "growing" in the supplement

@@ -57,7 +57,7 @@ struct GrainScale {
   std::string_view parameter = {};  ///< parameter of the run that multiplies `low` and `high`
   bool logarithmic = false;
   std::vector<std::string> classes = {};
-  bool whole = false;         ///< a whole number, such as a class
+  bool whole = false;         ///< the value is a whole number, such as the number of a class
   double of_wall_grains = 0;  ///< the value of wall grains in exports
 };
 

@@ -43,7 +43,7 @@ Eigen::Matrix3Xd untilted(const Checkpoint& checkpoint) {
   return position;
 }
 
-// Sums over the neighbours of one grain that determine the best affine deformation.
+// Sums over the neighbours of one grain. They determine the best affine deformation.
 struct Neighbours {
   Eigen::Matrix3d product = Eigen::Matrix3d::Zero();  // later x earlier
   Eigen::Matrix3d square = Eigen::Matrix3d::Zero();   // earlier x earlier
@@ -177,12 +177,12 @@ std::vector<Provider> motion_providers() {
                 {"reversible_percent", "%",
                  "interior grains at most 0.01 d from their position one cycle earlier"},
                 {"msd_inside_crystal_d2", "d^2",
-                 "mean squared displacement over 1 cycle of crystalline grains inside a crystal"},
+                 "mean squared displacement over 1 cycle, for crystalline grains in a crystal"},
                 {"msd_crystal_boundary_d2", "d^2",
-                 "mean squared displacement over 1 cycle of crystalline grains next to disordered "
-                 "grains"},
+                 "mean squared displacement over 1 cycle, for crystalline grains next to "
+                 "disordered grains"},
                 {"msd_disordered_d2", "d^2",
-                 "mean squared displacement over 1 cycle of disordered grains"}},
+                 "mean squared displacement over 1 cycle, for disordered grains"}},
            .compute = motion_over_one_cycle,
            .cycles_back = 1},
           {.name = "motion_10",

@@ -92,7 +92,7 @@ std::string order_of_waits(const Verdict& verdict) {
   }
   const double end = std::isfinite(low) ? low : high;
   if (!std::isfinite(end)) return fmt::format("no bound on the ratio of the cycles ({})", level);
-  // If the interval contains 0, its finite end bounds only "earlier" or only "later".
+  // If the interval contains 0, both "earlier" and "later" are possible, and only one has a limit.
   const bool least = std::isfinite(low) ? low >= 0 : high < 0;
   return fmt::format("the first is at {} {}{} ({})", least ? "least" : "most", times(end),
                      least     ? ""

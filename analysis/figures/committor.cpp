@@ -24,7 +24,7 @@ namespace {
 /// A crystallite counts as gone after this number of cycles without a descendant. Verdicts use
 /// cycles_gone. The other numbers show how much the results depend on this choice.
 constexpr std::array<std::size_t, 3> cycles_without = {1, cycles_gone, 3};
-constexpr std::size_t chosen_rule = 1;  ///< index of cycles_gone
+constexpr std::size_t chosen_rule = 1;  ///< index of cycles_gone in cycles_without
 /// No critical size is defined if more than this fraction of the controls (Subject) grow, and the
 /// smallest crystallites do not grow more often than the controls. [choice]
 constexpr double rare = 0.1;

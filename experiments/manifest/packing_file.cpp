@@ -265,13 +265,13 @@ class PackingReader {
     const int at = place(stated_in).line;
     if (found < *count) {
       refuse_line(line_,
-                  fmt::format("the file ends after {} of the {} grains that line {} states", found,
+                  fmt::format("the file ends after {} of the {} grains that line {} gives", found,
                               *count, at),
                   "Use a complete file, or correct the number of grains.");
     }
     refuse_line(
         grains_.rows[*count],
-        fmt::format("the file continues after the {} grains that line {} states", *count, at),
+        fmt::format("the file continues after the {} grains that line {} gives", *count, at),
         "Keep one frame, or correct the number of grains.");
   }
 
@@ -579,7 +579,7 @@ class PackingReader {
     set_unit(unit == "d" ? LengthUnit::d : LengthUnit::m, text);
   }
 
-  /// Sets the unit of lengths. `in`: a part of the line that gives the unit.
+  /// Sets the unit of lengths. `in`: text from the line that gives the unit.
   void set_unit(LengthUnit unit, string_view in) {
     const std::optional<LengthUnit> other = unit_ ? unit_ : facts_.unit;
     if (other && *other != unit) {

@@ -112,11 +112,11 @@ const std::vector<BadPacking> kBad = {
      "a.csv:1:1: the column x is missing. The first line must name the columns, such as "
      "x_m,y_m,z_m."},
     {"TooFew", "a.xyz", xyz("", "A 1 1 1\nA 3 3 3\n", 3),
-     "a.xyz:4:1: the file ends after 2 of the 3 grains that line 1 states. Use a complete file, "
+     "a.xyz:4:1: the file ends after 2 of the 3 grains that line 1 gives. Use a complete file, "
      "or "
      "correct the number of grains."},
     {"TooMany", "a.xyz", xyz("", "A 1 1 1\nA 3 3 3\nA 5 5 5\n"),
-     "a.xyz:5:1: the file continues after the 2 grains that line 1 states. Keep one frame, or "
+     "a.xyz:5:1: the file continues after the 2 grains that line 1 gives. Keep one frame, or "
      "correct the number of grains."},
     {"Zero", "a.xyz", xyz("", "", 0), "a.xyz:2:1: the file has no grains. " + kFormats},
     {"CountAlone", "a.xyz", "5",
@@ -201,10 +201,10 @@ const std::vector<BadPacking> kBad = {
      "a.dump:9:1: the column x is missing. Write these columns: dump ... custom ... id x y z vx vy "
      "vz."},
     {"DumpCut", "a.dump", dump("id x y z", "1 1 1 1\n"),
-     "a.dump:10:1: the file ends after 1 of the 2 grains that line 4 states. Use a complete file, "
+     "a.dump:10:1: the file ends after 1 of the 2 grains that line 4 gives. Use a complete file, "
      "or correct the number of grains."},
     {"DumpOfTwoFrames", "a.dump", dump("id x y z", "1 1 1 1\n2 3 3 3\nITEM: TIMESTEP\n1\n"),
-     "a.dump:12:1: the file continues after the 2 grains that line 4 states. Keep one frame, or "
+     "a.dump:12:1: the file continues after the 2 grains that line 4 gives. Keep one frame, or "
      "correct the number of grains."},
     {"DumpHeaderAlone", "a.dump", "ITEM: TIMESTEP\n0\n",
      "a.dump:2:1: the dump ends before its atoms. Use a complete dump."},
