@@ -71,7 +71,7 @@ struct Measure {
   RunValue (*of_run)(const FrameRun& run) = nullptr;
   /// Name for use in sentences; if empty, `name` is used. Required for kinds `run` and `grains`.
   std::string_view words = {};
-  std::string_view reach = {};  ///< the event that a run must reach to have the measure
+  std::string_view reach = {};  ///< the event that a run must reach to have a value
   bool waits = false;           ///< the value is the cycle of an event that may never occur
 };
 

@@ -68,8 +68,8 @@ struct StepTask {
   const double* rows = nullptr;  ///< positions [d], rows of 4
   NeighbourRows neighbours;
   std::array<WallPlane, 4> planes;  ///< planes[0] belongs to the moving wall
-  /// Output for each grain of a block near the moving wall: y component of the sum over the grain's
-  /// contacts with this wall [d].
+  /// Output for each grain of a block near the moving wall: y component of the grain's contact sum,
+  /// from contacts with this wall only [d].
   double* moving_wall_force_y = nullptr;
   double depth = 0, per_depth = 0;  ///< period in z [d] and its inverse
   /// Position of each grain when the list was built, in the frame that moves with the shear [d].

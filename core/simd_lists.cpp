@@ -36,9 +36,9 @@ HWY_INLINE std::size_t store_selected(hn::Vec<Offsets> values, hn::Mask<D> mask,
   return hn::CountTrue(kD, mask);
 }
 
-// Writes the row offsets of the ids to `outer`, in ascending id. The rank of an id is the number of
-// smaller ids. Nearly every list fits in two vectors. Two vectors are always compared, as a branch
-// on the length would be mispredicted. `ids` must have room for two vectors after its last entry.
+// Writes the row offsets of the ids to `outer`, sorted by id. The place of an id is its rank: the
+// number of smaller ids. Nearly every list fits in two vectors. Two vectors are always compared, as
+// a branch on the length would be mispredicted. `ids` must have room for two vectors after its end.
 HWY_INLINE void write_sorted(const SearchTask& t, std::int32_t* HWY_RESTRICT ids, std::size_t count,
                              std::int32_t* HWY_RESTRICT outer) {
   const hn::ScalableTag<std::int32_t> d;

@@ -153,7 +153,7 @@ struct RunMerge {
   std::optional<Event> closing_event(const Database& into) const {
     if (!before || source_wins || attempts.empty() || !last_claim) return std::nullopt;
     const StageState now = query_stage(into, before->id).value().state;
-    // A completed run of which more cycles are now requested is `declared`, and stays so.
+    // A completed run becomes `declared` if more cycles are requested. This change is kept.
     const bool more_to_do = before->state == StageState::completed && now == StageState::declared;
     if (now == before->state || more_to_do) return std::nullopt;
     return last_claim;
