@@ -85,8 +85,9 @@ std::vector<Provider> run_providers() {
              "energy that all grains and the moving wall lost by drag in the cycle before the "
              "checkpoint"},
             {"energy_stored_per_cycle_J", "J",
-             "change of the elastic, kinetic and gravitational energy of all grains and of the "
-             "energy of the load in the cycle before the checkpoint"}},
+             "change, in the cycle before the checkpoint, of the elastic, kinetic and "
+             "gravitational "
+             "energy of all grains plus the energy of the load"}},
        .compute = ledger_of,
        .cycles_back = 1,
        .from = ComputedFrom::simulation,

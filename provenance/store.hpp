@@ -176,7 +176,7 @@ class Store {
   /// Throws NotFound when there are several; the message lists the candidates.
   std::optional<CheckpointRecord> find_checkpoint(std::string_view prefix) const;
   /// The bytes of a checkpoint file, whose SHA-256 is checked. Throws StoreDamaged, which names the
-  /// file. Throws FilePruned if the checkpoint was pruned, even after `record` was read.
+  /// file. Throws FilePruned if the checkpoint was pruned, even if only after `record` was read.
   std::vector<std::byte> read_file(const CheckpointRecord& record) const;
   /// Decodes the file and compares the content with the record. Throws StoreDamaged with the path.
   Checkpoint load_checkpoint(const CheckpointRecord& record) const;

@@ -1231,7 +1231,7 @@ struct Reader {
     auto cycle =
         read_value(*find_field("start_cycle"), text.substr(std::min(at + 1, text.size())), false);
     if (!is_id || cycle.index() != 0) {
-      return reject_value(*checkpoint, "does not give a run and a whole cycle",
+      return reject_value(*checkpoint, "is not a run id with a whole cycle",
                           "Write 8 or more digits of the id, @ and the cycle: `0123abcd@10`.");
     }
     start.settings["start_cycle"] = {std::get<json>(std::move(cycle)), checkpoint->at};
