@@ -86,8 +86,7 @@ std::vector<Provider> run_providers() {
              "checkpoint"},
             {"energy_stored_per_cycle_J", "J",
              "change, in the cycle before the checkpoint, of the elastic, kinetic and "
-             "gravitational "
-             "energy of all grains plus the energy of the load"}},
+             "gravitational energy of all grains plus the energy of the load"}},
        .compute = ledger_of,
        .cycles_back = 1,
        .from = ComputedFrom::simulation,
