@@ -17,8 +17,8 @@ using FrameWriter = std::function<void(const ExportedState&)>;
 
 /// H5MD 1.1 in one file. particles/all holds box, position, velocity, id, species
 /// (ExportedState::type), mass, radius and the measures of each grain. observables holds every
-/// scalar. The attributes of the group parameters give the run and its parameters. Lengths are in
-/// nm, because MDAnalysis does not support metres. `frames`: number of frames that will be written.
+/// scalar. Attributes of the group parameters give the run and its parameters. Lengths are in nm,
+/// because MDAnalysis does not support metres. `frames`: number of frames that will be written.
 FrameWriter h5md_writer(const std::filesystem::path& file, std::size_t frames);
 
 /// Extended XYZ in one file. The comment line of each frame has the run, its parameters and the
