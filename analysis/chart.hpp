@@ -184,7 +184,7 @@ std::vector<ChartPoint> points_of(const Table& table, const Series& series);
 /// Adds the number of runs per point, such as "(3 to 5 runs)", to the title of each series in which
 /// this number varies or is less than Series::runs. Readers need this number, since a mean may
 /// change along a curve only because other runs contribute to it. If all series have the same
-/// numbers, the caption states them once.
+/// numbers, the caption gives them once.
 void name_run_counts(Table& table);
 
 /// Number of significant digits for values from `low` to `high`: 9, or more (up to 17) if needed to

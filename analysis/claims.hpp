@@ -52,9 +52,9 @@ struct ClaimSpec {
   Relation is = Relation::same;
   bool optional = false;               ///< no verdict if a side has no runs
   std::string cannot_be_decided = {};  ///< why no number of runs can decide the claim, or ""
-  /// The claim belongs to a shipped manifest, and the user's manifest lists the claim's figure. If
-  /// problems_of_sides() finds a problem in a listed claim, the verdict uses no runs. In any other
-  /// claim such a problem is an error.
+  /// True if a shipped manifest defines the claim, and the user's manifest lists its figure. If
+  /// problems_of_sides() finds a problem in such a claim, its verdict uses no runs. In any other
+  /// claim the problem is an error.
   bool listed = false;
 };
 
@@ -72,8 +72,8 @@ struct ClaimSides {
 };
 ClaimSides sides_of(const ClaimSpec& claim, std::span<const FrameRun> runs);
 
-/// Returns one claim for each value that the `for_each` key has among the runs. Returns the claim
-/// itself if it has no `for_each`, or if no run has this key.
+/// Returns one claim for each value that the parameter `for_each` has in the runs. Returns the
+/// claim itself if it has no `for_each`, or if no run has this parameter.
 std::vector<ClaimSpec> each_of(const ClaimSpec& claim, std::span<const FrameRun> runs);
 
 /// Converts to a Claim. For Relation::lower its margin is negative. `sides`: ClaimSides::names.
@@ -85,8 +85,8 @@ std::vector<std::string> problems_of_sides(const ClaimSpec& claim, const ClaimSi
                                            bool planned);
 
 /// A figure that has no panels, only the verdicts on the claim. A verdict is undecided if a side
-/// has no runs. For a claim that is not listed, Figure::make throws UsageError with the first
-/// problem of problems_of_sides().
+/// has no runs. Unless ClaimSpec::listed is true, Figure::make throws UsageError with the first
+/// problem that problems_of_sides() finds.
 Figure claim_figure(const ClaimSpec& claim);
 
 }  // namespace shearcell

@@ -22,7 +22,7 @@ Grains grains_of(const CrystalliteMap& map, const std::set<std::int32_t>& labels
 
 /// Numbers of grains that a crystallite shares with crystallites of earlier cycles.
 struct Origin {
-  std::size_t own = 0;                           ///< grains that are remembered (see followed())
+  std::size_t own = 0;                           ///< grains that followed() remembers
   std::size_t last = 0;                          ///< grains that were in the last descendants
   std::map<std::int32_t, std::size_t> of_other;  ///< by label: grains of unfollowed crystallites
 

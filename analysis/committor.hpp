@@ -26,7 +26,7 @@ inline constexpr std::size_t remembered_cycles = 3;
 /// Labels of the crystallites to follow: in each size bin, the one that has the lowest grain id.
 std::vector<std::int32_t> followed_in(const CrystalliteMap& start);
 
-/// The followed crystallite in one clone.
+/// What happens to the followed crystallite in one clone.
 struct Followed {
   /// Grains in the largest descendant, for each cycle after the start; 0: no descendant.
   std::vector<std::int32_t> sizes = {};

@@ -131,9 +131,9 @@ Lattice body_centred(std::span<const Neighbour> near) {
 
 /// Adaptive common neighbour analysis of each grain (Stukowski, Modelling Simul. Mater. Sci. Eng.
 /// 20, 045021 (2012)). Wall grains are neighbours too. FCC and HCP are recognized by the 12 nearest
-/// neighbours, BCC by 14. The longest bond is (1 + sqrt 2) / 2 times the mean distance of the 12
-/// neighbours or, for BCC, times the side of the cubic cell. A grain with fewer neighbours within
-/// 1.5 d has no lattice.
+/// neighbours, BCC by 14. The longest bond between neighbours is (1 + sqrt 2) / 2 times a length:
+/// the mean distance of the 12 neighbours or, for BCC, the side of the cubic cell. A grain with
+/// fewer neighbours within 1.5 d has no lattice.
 std::vector<Lattice> lattices_of(const Checkpoint& c) {
   std::vector<Lattice> lattices;
   for (const std::vector<Neighbour>& of_grain :

@@ -49,7 +49,7 @@ Crystallites crystallites(const VoronoiDiagram& diagram, std::span<const std::ui
 /// that crystallites can be followed from checkpoint to checkpoint.
 struct CrystalliteMap {
   std::vector<std::int32_t> grain;      ///< ids of the crystalline interior grains, ascending
-  std::vector<std::int32_t> label;      ///< crystallite of each of these grains
+  std::vector<std::int32_t> label;      ///< number of the crystallite of each entry of `grain`
   std::vector<std::int32_t> size;       ///< grains in each crystallite
   std::vector<Eigen::Vector3d> centre;  ///< centre of mass of each crystallite [d]
   double width = 0;                     ///< width of the cell [d]

@@ -59,7 +59,7 @@ struct Values {
   }
 };
 
-/// Makes the verdict and its note. `runs`: number of runs, or of pairs of runs, with a number.
+/// Makes the verdict and its note. `runs`: how many independent runs, or pairs, have a value.
 Verdict conclude(const Claim& claim, const std::string& quantity, std::optional<Estimate> estimate,
                  std::size_t runs, Values values, const Scalar& scalar, std::string note,
                  bool two_sides) {

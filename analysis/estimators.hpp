@@ -44,7 +44,7 @@ struct Estimator {
 
 /// All estimators that claims can use, in the order of REFERENCE.md.
 std::span<const Estimator> all_estimators();
-/// The estimator that the claim names, or that its keys imply.
+/// The estimator given by the claim's key `estimator` or, without this key, by its other keys.
 const Estimator& estimator_of(const ClaimSpec& claim);
 /// mean_over_cycles for a claim with `cycles`, mean_over_phi with `phi`, else number_of_the_run.
 const Estimator& estimator_by_keys(const ClaimSpec& claim);

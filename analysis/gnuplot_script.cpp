@@ -214,8 +214,8 @@ class Script {
     const double high = std::max(data.high, axis.high.value_or(data.high));
     const double length = axis.clip && axis.low && axis.high ? *axis.high - *axis.low : high - low;
     if (!(length > 0) || !std::isfinite(length)) return;
-    // The axis has about five steps of 1, 2 or 5 times a power of ten, or fewer if the labels below
-    // the frame would touch. All labels have the same number of decimals.
+    // A step of the axis is 1, 2 or 5 times a power of ten. The axis has about five steps, or
+    // fewer if the labels of x would touch. All labels have the same number of decimals.
     constexpr double letter = 6, gap = 8, margins = 65;  // [px]
     double step = 0;
     int decimals = 0;

@@ -22,7 +22,7 @@ double log_size(Eigen::Index k) {
   return std::log(static_cast<double>(k + 1));
 }
 
-/// The matrix that turns counts by size (columns) into moments near each size (rows).
+/// Turns counts by size (columns) into weighted moments of ln(size) about each size (rows).
 const FromSize& moment(int power) {
   static const std::array<FromSize, 3> all = [] {
     std::array<FromSize, 3> made;

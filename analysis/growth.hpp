@@ -21,7 +21,7 @@ struct GrowthCount {
   std::size_t grew = 0;  ///< more than half of the grains are in larger crystallites
   /// Like `grew`, but a larger crystallite contributed the most grains to the later crystallite.
   std::size_t absorbed = 0;
-  std::size_t shrank = 0;    ///< more than half of the grains are in smaller crystallites
+  std::size_t shrank = 0;    ///< more than half of its grains are later in smaller crystallites
   std::size_t vanished = 0;  ///< not in `shrank`, but most grains are in smaller or no crystallites
 
   std::size_t larger() const { return grew + absorbed; }     ///< "growing" in the supplement

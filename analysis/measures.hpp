@@ -57,7 +57,7 @@ struct GrainScale {
   std::string_view parameter = {};  ///< parameter of the run that multiplies `low` and `high`
   bool logarithmic = false;
   std::vector<std::string> classes = {};
-  bool whole = false;         ///< a whole number, such as a class
+  bool whole = false;         ///< the value is a whole number, such as the number of a class
   double of_wall_grains = 0;  ///< the value of wall grains in exports
 };
 
@@ -71,7 +71,7 @@ struct Measure {
   RunValue (*of_run)(const FrameRun& run) = nullptr;
   /// Name for use in sentences; if empty, `name` is used. Required for kinds `run` and `grains`.
   std::string_view words = {};
-  std::string_view reach = {};  ///< the event that a run must reach to have the measure
+  std::string_view reach = {};  ///< the event that a run must reach to have a value
   bool waits = false;           ///< the value is the cycle of an event that may never occur
 };
 

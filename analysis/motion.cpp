@@ -43,7 +43,7 @@ Eigen::Matrix3Xd untilted(const Checkpoint& checkpoint) {
   return position;
 }
 
-// Sums over the neighbours of one grain that determine the best affine deformation.
+// Sums over the neighbours of one grain. They determine the best affine deformation.
 struct Neighbours {
   Eigen::Matrix3d product = Eigen::Matrix3d::Zero();  // later x earlier
   Eigen::Matrix3d square = Eigen::Matrix3d::Zero();   // earlier x earlier

@@ -33,7 +33,7 @@ Interval poisson_interval(std::size_t events) {
   return {events == 0 ? 0 : quantile(tail, 2 * n), quantile(1 - tail, 2 * n + 2)};
 }
 
-/// Contribution of one run in one range of phi.
+/// What one run contributes to the likelihood from one range of phi.
 struct Share {
   double grains;  ///< N
   const std::string* packing;

@@ -53,7 +53,7 @@ struct NucleationRate {
   double phi_low = 0;
   double phi_high = 0;
   std::size_t events = 0;   ///< number of onsets
-  double grain_cycles = 0;  ///< grains of the region times cycles without onset, over all runs
+  double grain_cycles = 0;  ///< grains of the region times cycles without onset, sum over all runs
   double rate = 0;          ///< events per grain and cycle
   Interval interval;        ///< from the Poisson count: F. Garwood, Biometrika 28, 437 (1936)
 };

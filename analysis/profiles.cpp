@@ -181,10 +181,10 @@ std::vector<Provider> profile_providers() {
       {.name = "sensitivity",
        .parameters = crystal_criteria(),
        .measures = {{"crystalline_by_q6_window_percent", "%",
-                     "crystalline grains for each upper limit of |q6 - q6 of a lattice|", curve,
+                     "crystalline grains if |q6 - q6 of a lattice| may be up to `q6_window`", curve,
                      "q6_window", "1"},
                     {"crystalline_by_phi_local_percent", "%",
-                     "crystalline grains for each lower limit of phi_local", curve,
+                     "crystalline grains if phi_local must reach `phi_local_threshold`", curve,
                      "phi_local_threshold", "1"},
                     {"largest_by_face", "1",
                      "grains in the largest crystallite, as a function of the smallest face that "

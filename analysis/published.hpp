@@ -10,8 +10,8 @@
 
 namespace shearcell {
 
-/// Table I: parameters of all simulations, except for those that a section of the supplement
-/// varies. omega is pi rad/s.
+/// Table I: the parameters of each simulation, unless a section of the supplement varies one of
+/// them. omega is pi rad/s.
 inline constexpr double published_mass_kg = 2.0e-5;
 inline constexpr double published_diameter_m = 3.0e-3;
 inline constexpr double published_stiffness_N_per_m = 6.54e2;

@@ -30,7 +30,7 @@ json drive_of(const MeasureInput& input) {
           {"shear_rate_per_s", omega * rate / (sc.cosine * sc.cosine) + 0.0}};
 }
 
-/// The cycle is simulated again from the checkpoint one cycle earlier.
+/// Simulates the cycle before the checkpoint again, beginning at the checkpoint one cycle earlier.
 json ledger_of(const MeasureInput& input) try {
   if (!input.run->drive || input.record->step % cycle_steps(*input.run->drive) != 0) {
     return json::object();
@@ -85,8 +85,8 @@ std::vector<Provider> run_providers() {
              "energy that all grains and the moving wall lost by drag in the cycle before the "
              "checkpoint"},
             {"energy_stored_per_cycle_J", "J",
-             "change of the elastic, kinetic and gravitational energy of all grains and of the "
-             "energy of the load in the cycle before the checkpoint"}},
+             "change, in the cycle before the checkpoint, of the elastic, kinetic and "
+             "gravitational energy of all grains plus the energy of the load"}},
        .compute = ledger_of,
        .cycles_back = 1,
        .from = ComputedFrom::simulation,
@@ -111,7 +111,7 @@ std::vector<Provider> run_providers() {
                      "mean kinetic energy of a grain of mass m"},
                     {"wall_force_imbalance", "1",
                      "load minus contact force on the moving wall, divided by P A_w"},
-                    {"raised_stiffness_N_per_m", "N/m", "spring constant, raised by a stiffening"},
+                    {"raised_stiffness_N_per_m", "N/m", "spring constant during a stiffening"},
                     {"force_residual_P_d2", "P d^2",
                      "largest net force on a grain in a stiffening, divided by P d^2"}},
        .compute = record_of,

@@ -156,11 +156,11 @@ std::optional<double> median_wait(std::span<const Waiting> runs);
 /// of `a` come earlier; 0 if there are no events. N. Mantel, Cancer Chemother. Rep. 50, 163 (1966).
 double log_rank(std::span<const Waiting> a, std::span<const Waiting> b);
 
-/// log2 of the factor by which `a` waits longer than `b`. If the waits of `b` are multiplied by
-/// this factor, the log-rank statistic is zero. The interval holds all factors that the log-rank
+/// log2 of the ratio of the waiting times in `a` to those in `b`. If those in `b` are multiplied
+/// by this ratio, the log-rank statistic is zero. The interval holds all ratios that the log-rank
 /// test does not reject (A. A. Tsiatis, Ann. Stat. 18, 354 (1990)). The test uses Student's t with
-/// n + m - 2 degrees of freedom, since with the normal distribution only 86 to 88 % of the
-/// intervals from 4 to 12 runs per group would hold the true factor. The interval is infinite if
+/// n + m - 2 degrees of freedom, because with the normal distribution only 86 to 88 % of the
+/// intervals from 4 to 12 runs per group would hold the true ratio. The interval is infinite if
 /// too few events were observed. Empty if there is no event, or a group has fewer than least_runs.
 std::optional<Estimate> log2_wait_ratio(std::span<const Waiting> a, std::span<const Waiting> b,
                                         double level = confidence_level);

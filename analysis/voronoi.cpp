@@ -26,7 +26,7 @@ namespace {
 
 constexpr double smallest_face = 1e-13;         // [d^2]
 constexpr double coincidence_distance = 1e-10;  // closer sites coincide [d]
-// In a dense packing, images farther away do not affect a cell. Other packings need a second pass.
+// Images within this margin suffice in a dense packing. Other packings need a second pass.
 constexpr double first_margin_spacings = 2.1;
 // A circumcentre is computed in exact arithmetic if its error in doubles may exceed this value,
 // relative to the larger of 1 d and the radius of the sphere.
@@ -227,7 +227,7 @@ class Tessellation {
   }
 
   Eigen::Vector3d circumcentre(std::array<std::int32_t, 4> vertices) const {
-    // The origin is a measured site, so that only edges to the far guard points are long.
+    // A measured site becomes the origin of the edges, so that only edges to guards are long.
     if (!is_measured(vertices[0])) {
       std::iter_swap(vertices.begin(), std::ranges::find_if(vertices, [&](std::int32_t vertex) {
                        return is_measured(vertex);
@@ -436,12 +436,12 @@ class Tessellation {
   std::int32_t measured_;
   double margin_ = 0;
   Triangulation triangulation_;
-  // By vertex number: the sites, then the guards, then images.
+  // One entry per vertex: first the sites, then the guards, then the images.
   std::vector<SiteImage> image_;
   std::vector<Eigen::Vector3d> point_;
   std::size_t inserted_ = 0;  // number of points in the triangulation
   std::vector<Tetrahedron> tetrahedra_;
-  double reach_ = 0;  // largest distance by which a sphere around a corner exceeds the z period [d]
+  double reach_ = 0;  // see note_reach(): how far the spheres extend in z beyond [0, depth] [d]
   std::vector<std::vector<Side>> sides_;          // by measured site
   std::vector<std::array<double, 4>> wall_area_;  // by measured site and wall
   std::vector<Corner> polygon_;                   // current face

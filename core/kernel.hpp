@@ -68,8 +68,8 @@ struct StepTask {
   const double* rows = nullptr;  ///< positions [d], rows of 4
   NeighbourRows neighbours;
   std::array<WallPlane, 4> planes;  ///< planes[0] belongs to the moving wall
-  /// Output for each grain of a block near the moving wall: y component of the sum over the grain's
-  /// contacts with this wall [d].
+  /// Output for each grain of a block near the moving wall: y component of the grain's contact sum,
+  /// from contacts with this wall only [d].
   double* moving_wall_force_y = nullptr;
   double depth = 0, per_depth = 0;  ///< period in z [d] and its inverse
   /// Position of each grain when the list was built, in the frame that moves with the shear [d].
@@ -129,8 +129,8 @@ struct PruneTask {
   std::array<WallPlane, 4> planes;              ///< planes[0] belongs to the moving wall
   double wall_margin = 0;                       ///< margin of the wall planes [d]
   std::int32_t* inner = nullptr;                ///< output, laid out as in NeighbourRows
-  std::size_t inner_stride = 0;                 ///< largest number of slots of a block
-  std::uint32_t* begin = nullptr;               ///< list start of each block, as in NeighbourRows
+  std::size_t inner_stride = 0;                 ///< largest allowed number of slots in a block
+  std::uint32_t* begin = nullptr;               ///< where each block's list begins (NeighbourRows)
   std::uint16_t* inner_count = nullptr;         ///< length of the list of each lane
   std::uint16_t* other_slots = nullptr;         ///< one entry per block, like the next two arrays
   std::uint16_t* moving_wall_slots = nullptr;

@@ -166,8 +166,8 @@ bool NeighbourLists::prune(const Snapshot& now) {
   return true;
 }
 
-// The outer lists must contain every pair that is closer than 1 plus the inner margins. So an inner
-// margin is at most the unused part of the outer margin. Returns false if this part is too small.
+// Each pair closer than 1 plus its inner margins must be in the outer lists. So an inner margin is
+// at most the outer margin minus the movement so far. Returns false if too little is left.
 bool NeighbourLists::set_inner_margins(const Snapshot& now) {
   const double least = settings_.inner_margin();
   const double horizon = kInnerHorizon * now.time_step;

@@ -80,8 +80,8 @@ struct Fastest {
   std::int64_t grain = -1;
 };
 
-// Updates `fastest` if the bound of grain g exceeds both `least` and `fastest.bound`. Cheaper
-// estimates exclude nearly all grains before the eigenvalues are computed.
+// Bounds omega^2 of grain g. If the bound exceeds `least` and `fastest.bound`, updates `fastest`.
+// Cheaper estimates exclude nearly all grains before the eigenvalues are computed.
 void bound_grain(const WatchTask& task, std::size_t g, double least, Fastest& fastest) {
   const std::size_t block = g / task.lanes;
   const auto slots = static_cast<double>(task.neighbours.moving_wall_slots[block] +

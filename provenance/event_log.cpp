@@ -161,8 +161,8 @@ Event read_event(const sqlite::Statement& row) {
   return e;
 }
 
-/// Returns a text that says which field of an event was changed. A field was changed if the hash is
-/// valid with the field's expected value, which follows from the neighbouring events.
+/// Says in words which field of an event was changed. The neighbouring events give the expected
+/// value of a field. If the hash is valid with this value, the field was changed.
 std::string change_of(const Event& event, const std::string& prev_hash, std::uint64_t version,
                       const std::optional<Event>& next) {
   Event repaired = event;

@@ -153,7 +153,7 @@ struct RunMerge {
   std::optional<Event> closing_event(const Database& into) const {
     if (!before || source_wins || attempts.empty() || !last_claim) return std::nullopt;
     const StageState now = query_stage(into, before->id).value().state;
-    // If a larger target has changed the completed run to `declared`, the run stays `declared`.
+    // A completed run becomes `declared` if more cycles are requested. This change is kept.
     const bool more_to_do = before->state == StageState::completed && now == StageState::declared;
     if (now == before->state || more_to_do) return std::nullopt;
     return last_claim;
@@ -359,7 +359,7 @@ std::vector<MergeReport> Store::merge(const std::vector<std::filesystem::path>& 
         sqlite::WriteTransaction lock(database_);
         require_idle(*this);
         merge_events(database_, log_, lock, source, report);
-        // The last event of a copied checkpoint may be its rejection, but its file is valid now.
+        // The copied events may leave a checkpoint rejected, although its copied file is valid.
         for (const CheckpointRecord& record : needed) {
           const auto now = query_checkpoint(database_, record.run, record.sha256);
           if (!now || now->state != CheckpointState::rejected) continue;

@@ -114,8 +114,8 @@ struct Run {
   Ask ask = {};
   Stage stage = {};       ///< the last stage: shear or stiffening
   std::string name = {};  ///< name of the variant, for display
-  bool named = false;     ///< whether this name is a label from the manifest
-  /// False if the manifest has a newer version, or another run was declared later for this place.
+  bool named = false;     ///< whether `name` is a label from the manifest
+  /// False if the manifest has a newer version, or if a later run was declared for `place`.
   bool newest = true;
 };
 

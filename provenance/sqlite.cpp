@@ -240,7 +240,7 @@ void Statement::bind(int parameter, double value) {
 
 void Statement::bind(int parameter, std::span<const std::byte> blob) {
   require_fits(blob.size());
-  // SQLite binds NULL for a null pointer.
+  // SQLite would bind NULL for a null pointer, so an empty blob points to an empty text.
   check(sqlite3_bind_blob64(handle_.get(), parameter,
                             blob.empty() ? static_cast<const void*>("") : blob.data(), blob.size(),
                             SQLITE_TRANSIENT));

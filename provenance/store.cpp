@@ -283,7 +283,7 @@ void Store::declare_stage(const Stage& declared) {
   for (const Membership& m : declared.memberships) {
     const NewEvent event = encode(events::RunDeclared{declared, m});
     if (adds_something(known, m)) append(run_stream(declared.id), event, lock);
-    // If another stage was declared later for this place, this stage is declared again.
+    // Another stage may have been declared later for this experiment, scale, variant and seed.
     if (!holds_place(database_, declared.id, m.place)) append(run_stream(declared.id), event, lock);
   }
   lock.commit();

@@ -176,7 +176,7 @@ class Store {
   /// Throws NotFound when there are several; the message lists the candidates.
   std::optional<CheckpointRecord> find_checkpoint(std::string_view prefix) const;
   /// The bytes of a checkpoint file, whose SHA-256 is checked. Throws StoreDamaged, which names the
-  /// file. Throws FilePruned if the checkpoint is pruned, even if `record` is older.
+  /// file. Throws FilePruned if the checkpoint was pruned, even if only after `record` was read.
   std::vector<std::byte> read_file(const CheckpointRecord& record) const;
   /// Decodes the file and compares the content with the record. Throws StoreDamaged with the path.
   Checkpoint load_checkpoint(const CheckpointRecord& record) const;
@@ -197,7 +197,7 @@ class Store {
 
   /// The checkpoints that prune() may delete. Excludes the initial states of stages that have not
   /// ended. Without PruneChoice::last_too, also excludes the initial states of ended stages, the
-  /// newest readable checkpoint of each run, and all later checkpoints of this run.
+  /// newest readable checkpoint of each run, and the unreadable ones after it.
   std::vector<CheckpointRecord> prunable(const PruneChoice& choice) const;
   /// Pruned checkpoints whose files still exist because of a crash.
   std::vector<CheckpointRecord> prune_leftovers() const;

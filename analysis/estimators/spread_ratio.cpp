@@ -65,8 +65,8 @@ Verdict decide_ratio(const ClaimSpec& claim, const Claim& stated, RunGroup runs,
 const Estimator spread_ratio = {
     .name = "spread_ratio",
     .meaning =
-        "s/t - 1, where s is the standard deviation of the number within variants, and t is the "
-        "standard deviation of `against` within variants",
+        "s/t - 1, where s and t are the standard deviations of `compare` and of `against` among "
+        "runs of the same variant",
     .key = "against",
     .of_run = true,
     .over_variants = true,

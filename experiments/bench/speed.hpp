@@ -32,8 +32,8 @@ struct SpeedResult {
   std::string simd = {};
   std::size_t threads = 1;
   double median_rate = 0, slowest_rate = 0, fastest_rate = 0;
-  /// Fractions of the time. Wall: wall planes and grains of the moving wall. Force: neighbours and
-  /// other wall grains. No share includes the drive, wall movement, sorting and the watchdog.
+  /// Fractions of the time. wall_share: contacts with wall planes and grains of the moving wall.
+  /// force_share: other contacts. Drive, wall movement, sorting and watchdog are in no share.
   double force_share = 0, integration_share = 0, wall_share = 0;
   double search_share = 0, prune_share = 0;  ///< search of outer lists, pruning of inner lists
   double steps_per_search = 0, steps_per_prune = 0;

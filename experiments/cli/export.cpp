@@ -292,7 +292,7 @@ std::vector<Exported> write_all(const Store& store, const std::vector<PlacedRun>
   // A path such as "frames/" has an empty file name.
   const fs::path given = fs::absolute(options.out);
   const fs::path out = given.has_filename() ? given : given.parent_path();
-  // A crate may replace an earlier crate of the same run.
+  // An RO-Crate may replace an earlier RO-Crate of the same run.
   if (single && format.writer == nullptr && fs::exists(out) && !fs::is_empty(out)) {
     return {{runs.front().stage.id, options.out,
              write_run(store, runs.front(), format, options, out, unread)}};

@@ -144,8 +144,8 @@ void note_looks(const std::vector<Plan>& plans, const std::vector<Line>& lines,
   }
 }
 
-// Returns the particle-steps that are left if each `until` ends its runs at the mean cycle at which
-// it ended earlier runs. Null if no run has an `until`, or if some `until` has ended no run yet.
+// Estimates the particle-steps that are left if each `until` is reached at the mean cycle at which
+// earlier runs reached it. Null if no run has an `until`, or if some `until` was never reached.
 nlohmann::json left_until(const std::vector<Line>& lines, const std::vector<Stage>& known) {
   std::map<nlohmann::json, std::optional<double>>
       ends;  // `until` -> expected last cycle; cached, since expected_end() reads all runs

@@ -96,7 +96,7 @@ void prune(const PruneOptions& options, Context& context) {
   const std::size_t kept = std::erase_if(
       records, [&](const CheckpointRecord& c) { return why_not_again(store, c, known); });
   if (!context.json && kept > 0) {
-    fmt::print("{} kept: not bitwise reproducible (made by LAMMPS or another version)\n",
+    fmt::print("{} kept: not bitwise reproducible (from LAMMPS or another program version)\n",
                counted(kept, "checkpoint"));
   }
   const std::size_t chosen = records.size();

@@ -78,7 +78,7 @@ void add_table(CLI::App& app, Context& context) {
     command
         ->add_flag_callback(
             "--" + name, [options = options, name] { options->simulated.push_back(name); },
-            fmt::format("Add {}, from a simulation that takes {}", fmt::join(added, ", "),
+            fmt::format("Add {}; this needs a simulation that takes {}", fmt::join(added, ", "),
                         one.cost))
         ->excludes(command->get_option("--curve"));
   }

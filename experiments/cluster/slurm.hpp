@@ -60,7 +60,7 @@ void require_slurm();
 /// MachineError if it is unknown whether the job is queued.
 std::string queue_job(const Job& job, const std::filesystem::path& folder);
 
-/// The jobs with these names that wait, run, are suspended or are ending, of all users and
+/// All waiting, running, suspended and ending jobs with these names, of all users and
 /// partitions. Does not call Slurm if there are no names. Throws ProgramError.
 std::vector<QueuedTask> ask_queue(const std::vector<std::string>& names);
 

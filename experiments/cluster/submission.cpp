@@ -31,9 +31,9 @@ constexpr std::size_t kIdDigits = 12;
 //
 // Some time before the time limit, Slurm sends USR1, only to the shell (`B:` in --signal). If a job
 // is cancelled or preempted, Slurm sends TERM to all processes. After either signal, the program
-// records its states and ends with exit code 85. After USR1, the script queues the task again by
-// its name ARRAY_TASK, because the job number of the task may also be the number of the whole
-// array. If the program is killed (out of memory), the script starts the program again.
+// records its states and ends with exit code 85. After USR1, the script also queues the task again.
+// It identifies the task as ARRAY_TASK ("17_3"), because the job number of a task may also be the
+// number of the whole array. If the program is killed (out of memory), the script restarts it.
 constexpr const char* kTaskScript = R"sh(#!/bin/bash
 again= stopped= signalled= program= leave=${SLURM_RESTART_COUNT:+--leave-failed}
 pass_on() {

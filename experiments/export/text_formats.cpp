@@ -37,7 +37,7 @@ std::string quoted(std::string text) {
   return looks_like_a_value(text) ? "\"'" + text + "'\"" : '"' + text + '"';
 }
 
-/// `length`: the unit of lengths [m].
+/// The comment line of a frame. `length`: the length of one `unit` [m].
 std::string xyz_comment(const ExportedState& f, LengthUnit unit, double length) {
   const Checkpoint& c = f.checkpoint;
   const Eigen::Matrix3d e = f.edges / length;

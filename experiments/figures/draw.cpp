@@ -27,8 +27,8 @@
 namespace shearcell {
 namespace {
 
-/// The checkpoints of the run that the figure used, in the order of steps. The list includes the
-/// earlier checkpoints that measures of changes needed.
+/// The checkpoints of the run that the figure used, in the order of steps. They include
+/// earlier checkpoints if a measure of the figure is a change between two checkpoints.
 std::vector<CheckpointRecord> used_checkpoints(const Store& store, const ComputedFigure& figure,
                                                const FrameRun& run) {
   std::set<std::string> own;

@@ -68,8 +68,8 @@ nlohmann::json overrides_of(const Store& store, const Stage& stage, const Place&
 /// "S2".
 std::string figure_name(const FigureRecord& record);
 
-/// The path of the figure, such as "drag/desk/S2", even if an older version recorded "drag/S2".
-/// For a figure of all experiments, such as "desk/table1".
+/// The path of the figure: "drag/desk/S2" for example, or "desk/table1" for a figure of all
+/// experiments. If an older version recorded "drag/S2", the path is "drag/desk/S2", too.
 std::string figure_path(const FigureRecord& record);
 
 /// The text of a figure's lineage file, which is the payload of the figure's record without host

@@ -30,7 +30,7 @@ using nlohmann::ordered_json;
 struct Row {
   const FrameRun* run = nullptr;
   const CheckpointMeasures* checkpoint = nullptr;  // null for a run that was not started
-  const FrameRun* history = nullptr;  // the run at whole cycles, for onsets; may be null
+  const FrameRun* history = nullptr;  // the run with only its whole cycles, for onsets; or null
 };
 
 struct Column : TableColumn {

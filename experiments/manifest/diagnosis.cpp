@@ -668,7 +668,7 @@ void warn_of_figures(const Manifest& manifest, const ScaleRuns& here,
       ids.push_back(claim.id);
       said.emplace(stated(claim, sides_of(claim, here.runs).names).text, claim.id);
       const ClaimProblems found = problems_of(claim, here);
-      // A claim of a listed figure may select values that no run of this experiment has.
+      // A shipped claim (ClaimSpec::listed) may select values that no run of this experiment has.
       if (claim.listed && !found.refusals.empty()) continue;
       warn_of(format("{}: claim {}", place, claim.id), found.refusals);
       // Small scales are for trials, so warn only if no other scale can decide the claim.

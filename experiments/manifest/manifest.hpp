@@ -71,7 +71,7 @@ class ProblemList {
   std::set<std::string> known_;
 };
 
-/// Throws a ManifestError with this problem_text().
+/// Throws a ManifestError with the problem_text() of these arguments.
 [[noreturn]] void refuse(std::string_view file, Position at, const std::string& key,
                          const std::string& problem, const std::string& got,
                          const std::string& remedy);
@@ -157,9 +157,9 @@ struct Start {
   std::string file = {};  ///< relative to the folder of the manifest
   std::optional<LengthUnit> unit = {};
   std::string experiment = {};
-  std::string scale = {};    ///< "" for the scale of the shear
+  std::string scale = {};    ///< of the recorded run; "": the scale of the shear
   std::string variant = {};  ///< swept values; "" if not given
-  /// First digits of the run's id, from `checkpoint`; replaces experiment, scale and variant.
+  /// First digits of the run's id, given by `checkpoint` instead of experiment, scale and variant.
   std::string run = {};
   Settings settings = {};  ///< start_seed, start_cycle, start_noise_d
   Position at = {};

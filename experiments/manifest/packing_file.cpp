@@ -236,7 +236,7 @@ class PackingReader {
     const auto value = read_number<double>(part.substr(sign ? 1 : 0));
     if (value && std::fabs(*value) <= kLargest) return *value;
     if (value) {
-      refuse_part(part, name, "is not finite, or larger than 1e100",
+      refuse_part(part, name, "is not finite, or is larger than 1e100",
                   "Remove this grain, or correct the value.");
     }
     if (part.find(',') != part.npos && part.find_first_not_of("+-0123456789,eE") == part.npos) {
@@ -579,7 +579,7 @@ class PackingReader {
     set_unit(unit == "d" ? LengthUnit::d : LengthUnit::m, text);
   }
 
-  /// Sets the unit of lengths. `in`: a part of the line that gives the unit.
+  /// Sets the unit of lengths. `in`: text from the line that gives the unit.
   void set_unit(LengthUnit unit, string_view in) {
     const std::optional<LengthUnit> other = unit_ ? unit_ : facts_.unit;
     if (other && *other != unit) {

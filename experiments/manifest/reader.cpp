@@ -250,10 +250,10 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
                      .names = can_be_by});
   visit(plot.show,
         {.name = "show",
-         .doc = "`mean` (default), `rms`: mean or root mean square, each with a standard error; "
-                "`traces`: every run as a line; `scatter`: every value as a point. The CSV file of "
-                "`traces` and `scatter` lists every run. It lists means instead if `y` is a curve, "
-                "or if `x` has one value for each run"});
+         .doc = "`mean` (default) or `rms` (root mean square), with standard errors; `traces`: "
+                "every run as a line; `scatter`: every value as a point. The CSV file of `traces` "
+                "and `scatter` lists every run, but only means if `y` is a curve, or if `x` has "
+                "one value for each run"});
   visit(plot.log, {.name = "log", .doc = "logarithmic axes; default `none`"});
   visit(plot.xlabel,
         {.name = "xlabel",
@@ -280,7 +280,7 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
                     .example = "[phi_uncorrected]"});
   visit(plot.mark,
         {.name = "mark",
-         .doc = "a black point on each curve, whose x and y are means of measures of whole runs",
+         .doc = "a black point on each curve, at the mean values of two measures of whole runs",
          .example = "{x: onset_size_cycle, y: onset_size_phi, label: onset}"});
   visit(plot.cycle, {.name = "at_cycle",
                      .range = kCycles,
@@ -483,7 +483,7 @@ string shown(const Node& node) {
   return node.quoted ? fmt::format("\"{}\"", printable(node.text)) : printable(node.text);
 }
 
-// "It takes `[1, 15]`.": gives the example of the key or, without an example, the allowed values.
+// Returns "It takes `[1, 15]`." with the example of the key, or else with the allowed values.
 string remedy_of(const Field& about) {
   return about.example.empty() ? fmt::format("It takes {}.", expected_values(about))
                                : fmt::format("It takes `{}`{}.", about.example, about.besides);
@@ -1231,7 +1231,7 @@ struct Reader {
     auto cycle =
         read_value(*find_field("start_cycle"), text.substr(std::min(at + 1, text.size())), false);
     if (!is_id || cycle.index() != 0) {
-      return reject_value(*checkpoint, "does not give a run and a whole cycle",
+      return reject_value(*checkpoint, "is not a run id with a whole cycle",
                           "Write 8 or more digits of the id, @ and the cycle: `0123abcd@10`.");
     }
     start.settings["start_cycle"] = {std::get<json>(std::move(cycle)), checkpoint->at};

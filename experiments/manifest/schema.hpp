@@ -22,8 +22,8 @@ namespace shearcell {
 struct Identity {
   std::optional<StageKind> stage = {};     ///< first stage whose id it changes; empty: none
   std::optional<ProtocolKind> under = {};  ///< recorded only under this protocol; empty: any
-  /// The record omits the parameter if it has this value, written as in a manifest. All runs that
-  /// are older than the parameter have this value, which may differ from the default.
+  /// If the parameter has this value (written as in a manifest), records omit it. All runs that are
+  /// older than the parameter have this value. The default may be another value.
   std::string_view omitted_at = {};
   /// Every new record holds this value, whatever the value of the parameter, because the parameter
   /// is no longer part of the identity. Records of older runs may hold other values.

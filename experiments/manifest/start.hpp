@@ -17,10 +17,10 @@
 
 namespace shearcell {
 
-/// The run in `known` whose state is the initial state of the variant. If several runs fit `start`,
-/// returns the run that has the variant's value for each key that both experiments sweep. Throws
-/// ManifestError if not exactly one run remains, if the run has no checkpoint at the cycle, or if
-/// its cell or grains differ from the cell or grains of the variant.
+/// Returns the run in `known` from which the variant starts. If several runs fit the key `start`,
+/// selects the run with the variant's values of the keys that both experiments sweep. Throws
+/// ManifestError if no run or several runs remain, if the run has no checkpoint at the start cycle,
+/// or if its cell or grains differ from those of the variant.
 const Stage& recorded_run(const Manifest& manifest, const Scale& scale, const Variant& variant,
                           std::span<const Stage> known);
 

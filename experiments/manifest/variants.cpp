@@ -242,8 +242,8 @@ std::map<json, std::string> variant_names(const std::vector<json>& variants,
   const auto some = std::stable_partition(all.begin(), all.end(), [&](const std::string& key) {
     return std::ranges::all_of(variants, [&](const json& v) { return v.contains(key); });
   });
-  // Of several keys that vary together, only the first is kept. A variant without this key would
-  // get no name. Therefore the keys that exist in every variant are put first.
+  // Only the first of several keys that vary together is kept. If a variant lacked this key, it
+  // would get no name. Therefore the keys that exist in every variant are put first.
   std::vector<std::string> keys = keys_telling_apart(variants, {all.begin(), some});
   for (const std::string& key : keys_telling_apart(variants, all)) {
     if (std::find(some, all.end(), key) != all.end()) keys.push_back(key);

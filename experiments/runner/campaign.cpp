@@ -157,8 +157,8 @@ class Campaign {
     int losses = 0;                   // number of attempts that ended with StageOutcome::lost
   };
 
-  // The first job that can begin; otherwise the first held job that is due for a check; otherwise
-  // null. If a job can no longer begin, sets its state to JobState::ended.
+  // Returns the first job that can begin, or else the first JobState::held job whose `check_at` has
+  // passed, or else null. Jobs that can no longer begin get the state JobState::ended.
   Job* next_job() {
     Job* held_job = nullptr;
     for (Job& job : jobs_) {
@@ -283,7 +283,7 @@ class Campaign {
     }
     if (held_by_another(job.id)) return put_off(job);
     if (was_held && stage.state == StageState::failed) {
-      note(job, &CampaignResult::failed, stage.error);  // failed elsewhere, would fail here too
+      note(job, &CampaignResult::failed, stage.error);  // it would fail in this process, too
       return JobState::ended;
     }
     progress_.begin(job);

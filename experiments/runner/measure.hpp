@@ -60,7 +60,7 @@ MeasureOutcome measure_checkpoints(const Store& store, std::span<const ToMeasure
                                    const MeasureOptions& options);
 
 /// Analyses a stored checkpoint. Throws StoreDamaged, with the checkpoint and the run, if the state
-/// cannot be analysed, because this program never records such a state.
+/// cannot be analysed. Such a file is damaged, since this program never records such a state.
 Analysis analyse_stored(const CheckpointRecord& record, const Checkpoint& checkpoint);
 
 /// Calls work(0) .. work(count - 1), at most `workers` at once. Collects the messages of

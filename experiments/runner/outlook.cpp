@@ -53,7 +53,7 @@ std::optional<EarlyEnd> early_end(const json& ended) {
   }
 }
 
-/// The cycle at which the stage reached this `until`, if a completion recorded it.
+/// The cycle at which the stage reached `until`, if this was recorded when the stage completed.
 std::optional<double> recorded_reach(const Stage& stage, const Until& until, double every) {
   for (const json& ended : stage.ends) {
     const auto end = early_end(ended);

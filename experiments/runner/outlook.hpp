@@ -97,7 +97,7 @@ std::uint64_t checkpoint_cadence(std::span<const Ask> asks);
 /// store has recorded that it was reached. Sets Outlook::unreadable if a request cannot be read.
 Outlook look_at(const Store& store, const Stage& stage);
 
-/// A stage of one or more plans, with the store's records of this stage.
+/// A stage that runs of one or more plans need, with what the store records about this stage.
 struct PlannedStage {
   const PlannedRun* run = nullptr;  ///< the first run with this stage
   Stage stage = {};

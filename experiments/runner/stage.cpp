@@ -117,7 +117,7 @@ struct Beginning {
   Cell cell;
   State state;
   std::optional<CheckpointRecord> from = {};  ///< set if the state is a checkpoint of this stage
-  std::string parent_checkpoint = {};         ///< SHA-256; "" if the state is not the parent's
+  std::string parent_checkpoint = {};         ///< SHA-256; "" if `state` is not from the parent
 };
 
 /// Recomputes the file of a checkpoint if it was pruned. Throws FilePruned if the options do not

@@ -85,11 +85,11 @@ const std::vector<BadPacking> kBad = {
      "a.xyz:4:5: y: is not a number (got three). Write the number in decimal digits, such as "
      "1.5e-3."},
     {"NaN", "a.xyz", xyz("", "A 1 1 nan\nA 3 3 3\n"),
-     "a.xyz:3:7: z: is not finite, or larger than 1e100 (got nan). Remove this grain, or correct "
-     "the value."},
+     "a.xyz:3:7: z: is not finite, or is larger than 1e100 (got nan). Remove this grain, or "
+     "correct the value."},
     {"Infinite", "a.csv", "x,y,z\n1,2,-inf\n",
-     "a.csv:2:5: z: is not finite, or larger than 1e100 (got -inf). Remove this grain, or correct "
-     "the value."},
+     "a.csv:2:5: z: is not finite, or is larger than 1e100 (got -inf). Remove this grain, or "
+     "correct the value."},
     {"BeyondDouble", "a.csv", "x,y,z\n1,2,1e999\n",
      "a.csv:2:5: z: is not a number (got 1e999). Write the number in decimal digits, such as "
      "1.5e-3."},

@@ -86,7 +86,7 @@ class Deck {
         +kLeft, +kRight, +kBottom, +kTop);
     add(text_, "# (type {}) that represents the moving wall and touches nothing.", +kWall);
     add(text_, "read_data {} extra/atom/types 1", data);
-    // The wall's atom is created at x and y of a grain: LAMMPS creates no atom outside the box.
+    // The atom of the wall gets x and y of a grain: LAMMPS creates no atom outside the box.
     const Eigen::Vector3d start = task_.state.position.col(0) * d_;
     add(text_, "create_atoms {} single {:.17g} {:.17g} {:.17g} units box", +kWall, start.x(),
         start.y(), cell_.depth / 2 * d_);
@@ -190,7 +190,7 @@ pair_coeff * * ${{law}})",
     if (has(WallSide::top) && !bottom_moves_) carry("top", "zero", "zero", true);
   }
 
-  // A side plane turns about its upper end. The motion of a region is relative to the initial pose.
+  // Side planes rotate about their upper ends. LAMMPS moves a region relative to its first pose.
   // If shearcell itself runs LAMMPS, the bottom and top planes use wall/harmonic, because fix
   // wall/region reports its force only for the first step.
   void plane(std::size_t side) {
