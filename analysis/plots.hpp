@@ -33,7 +33,7 @@ inline constexpr auto kNames<LogAxes> = names_in_order<LogAxes>("none", "x", "y"
 /// replaced by a style that depends on the swept values (styles.hpp).
 struct SeriesSpec {
   nlohmann::json where;     ///< parameter -> value, for all variants of the curve
-  std::string column = {};  ///< instead of `where`: the name of one of several y columns
+  std::string column = {};  ///< instead of `where`: one column of a plot with several y columns
   std::string label = {};   ///< may have formulas (formula())
   std::string colour = {};  ///< "#rrggbb", or one of colour_names
   std::string marker = {};  ///< one of marker_names

@@ -21,7 +21,7 @@ struct ExpandOptions {
   std::optional<std::string> scale = {};     ///< default: `desk`, or `base` if there are no scales
   std::optional<std::uint64_t> cycles = {};  ///< replaces the number in the manifest
   std::optional<std::uint64_t> seeds = {};   ///< replaces the number of seeds; shortens a list
-  std::vector<std::string> variants = {};    ///< only variants with these values, as "fluid=cell"
+  std::vector<std::string> variants = {};    ///< only variants with these values: "fluid=cell"
   std::vector<std::uint64_t> only_seeds = {};  ///< only runs with these seeds; empty for all
   std::optional<std::string> engine = {};      ///< replaces the engine; becomes a swept key
   /// Stages in the store, and stages that the same command computes before this manifest. If an

@@ -69,7 +69,7 @@ struct GrainTable {
   std::vector<Column> columns = {};
   const char* more = nullptr;  ///< name for additional values in a row; null: an error
   char separator = ' ';        ///< ' ' means any number of blanks and tabs
-  double first_wall = 1;       ///< a grain with at least this kWall is a wall grain
+  double first_wall = 1;       ///< wall grains have at least this value of kWall
   std::vector<string_view> rows = {};
 };
 
