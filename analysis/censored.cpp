@@ -76,8 +76,8 @@ Expansion expanded(const Sample& sample, const Eigen::Vector3d& at) {
 }
 
 /// Maximizes ln L by Newton's method, starting from `at`, and returns the maximum. A step that
-/// would lower ln L is halved. If the observed values do not scatter, ln L has no maximum. The
-/// iteration then ends when h reaches 1e8.
+/// would lower ln L is halved. If all observed values equal mu exactly, ln L has no maximum. The
+/// iteration then ends when h = 1 / sigma reaches 1e8.
 double maximize(const Sample& sample, Eigen::Vector3d& at) {
   Expansion here = expanded(sample, at);
   double gain = 1;

@@ -73,7 +73,7 @@ json packed(const std::vector<std::int32_t>& values) {
 
 std::vector<std::int32_t> unpacked(const json& result, const char* key) {
   const auto& bytes = result.at(key).get_binary();
-  if (bytes.size() % 4 != 0) refuse(std::string(key) + " has an incomplete number");
+  if (bytes.size() % 4 != 0) refuse(std::string(key) + " ends in the middle of a number");
   std::vector<std::int32_t> values(bytes.size() / 4);
   std::ranges::copy(bytes, reinterpret_cast<std::uint8_t*>(values.data()));
   return values;
@@ -82,8 +82,8 @@ std::vector<std::int32_t> unpacked(const json& result, const char* key) {
 /// Throws AnalysisError unless grain ids ascend, each label belongs to a crystallite, each size
 /// is the number of grains with this label and is not 0, and centres and the cell are finite.
 void check(const CrystalliteMap& map) {
-  if (map.label.size() != map.grain.size()) refuse("labels and grains differ in number");
-  if (map.centre.size() != map.size.size()) refuse("centres and sizes differ in number");
+  if (map.label.size() != map.grain.size()) refuse("it needs one label for each grain");
+  if (map.centre.size() != map.size.size()) refuse("it needs one centre for each size");
   std::vector<std::int32_t> count(map.size.size());
   for (std::size_t k = 0; k < map.grain.size(); ++k) {
     const std::int32_t before = k == 0 ? -1 : map.grain[k - 1];

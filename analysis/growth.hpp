@@ -80,9 +80,9 @@ class GrowthCurve {
   /// least_bootstrap_runs runs, or if there is no such size. The interval comes from the bootstrap.
   /// An end of the interval is infinite if too many bootstrap selections have no such size.
   std::optional<Estimate> critical_size() const;
-  /// The size for which the excess of growing over shrinking crystallites of this size and above is
-  /// largest. At this size the monotone (isotonic) fit of the unsmoothed delta_rho crosses zero
-  /// (M. Ayer et al., Ann. Math. Stat. 26, 641 (1955)). A less precise check of critical_size().
+  /// The size s that maximizes the number of growing minus shrinking crystallites with at least s
+  /// grains. At s the monotone (isotonic) fit of the unsmoothed delta_rho crosses zero (M. Ayer et
+  /// al., Ann. Math. Stat. 26, 641 (1955)). This checks critical_size(), but is less precise.
   std::optional<Estimate> monotone_critical_size() const;
   /// 90 % interval of the critical size in repeated studies with `runs` runs.
   Interval repeated_critical_size(std::size_t runs) const;

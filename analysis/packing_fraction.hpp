@@ -40,8 +40,8 @@ struct Overlaps {
 Overlaps overlaps(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd& grains);
 
 /// Distance of each grain's centre from the nearest wall surface in x and y [d], measured along the
-/// normal of the wall. If the cell has wall grains, the surface is `rough_wall_surface` inside the
-/// wall plane, else it is the plane.
+/// normal of the wall. Without wall grains in the cell, the surface is the wall plane. With wall
+/// grains, it lies inside the plane, at a distance of `rough_wall_surface`.
 std::vector<double> distances_from_walls(const Cell& cell, const WallPose& pose,
                                          const Eigen::Matrix3Xd& grains);
 

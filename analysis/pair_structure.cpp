@@ -102,7 +102,7 @@ WaveVector largest_components(const InteriorRegion& region) {
   const auto within = [](double length) {
     return static_cast<int>(largest_wave_per_d * length / (2 * kPi));
   };
-  // If the walls are tilted, k_y depends on the first and the second component.
+  // If the walls are tilted, the first component of a wave vector contributes to k_y, too.
   return {within(region.width), within(region.height * (1 + std::abs(region.tan_theta))),
           within(region.depth)};
 }

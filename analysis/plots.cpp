@@ -231,8 +231,8 @@ Trace evaluate(const PlotSpec& plot, std::span<const NumberColumn> columns, cons
   return trace;
 }
 
-/// Gives all runs of a variant the same x, so that they share a point. x is a measure of the whole
-/// run; its new value is the mean over the variant's runs that have a y.
+/// Replaces x, a measure of the whole run, by its mean over the runs of the variant, so that these
+/// runs share a point. The mean includes only runs that have a y.
 void average_x(std::vector<Curve>& curves) {
   std::map<std::string, std::vector<double>> found;  // x of each variant
   const auto for_each_sample = [&](const auto& visit) {
@@ -427,7 +427,7 @@ RunStatistics mean_with_censored(RunGroup runs, std::span<const CensoredValue> v
 
 /// Means over the runs of a curve at one cycle, in one bin of phi or at one x.
 struct Bin {
-  double at = 0;  ///< the cycle, the lower end of the bin of phi, or x
+  double at = 0;  ///< depends on the plot: cycle, lower end of the bin of phi, or x
   RunStatistics x = {};
   std::vector<RunStatistics> y = {};            ///< one entry for each column
   std::size_t values = 0;                       ///< runs with a y
@@ -775,7 +775,7 @@ std::string note_of(const Panel& panel, std::size_t with_value) {
   if (!is_of_run(panel.plot.y)) {
     if (!std::isfinite(panel.cycle)) return "";
     return fmt::format("At {} {}{}", word_for_cycle(panel.selected), panel.cycle,
-                       panel.plot.cycle ? "" : ", the last that all runs have");
+                       panel.plot.cycle ? "" : ", the last one that all runs have recorded");
   }
   const std::size_t runs = panel.selected.size();
   std::size_t censored = 0;
@@ -944,7 +944,7 @@ void note_equal_looks(const Panel& panel, Table& table) {
           std::string("Some curves look the same, because there are more curves than styles");
 }
 
-/// Inserts a column with the value of the panel's parameter after the column of the variant.
+/// Adds the parameter of the panel as the second column. Changes nothing if the column exists.
 void add_panel_column(const std::string& parameter, const json& value, Table& table) {
   if (table.place(parameter) < table.columns.size()) return;
   table.columns.insert(table.columns.begin() + 1, parameter);

@@ -26,7 +26,7 @@ struct PublishedAmplitude {
   double amplitude_rad;
   double critical_size;                ///< grains
   std::int64_t n_bin;                  ///< cycles over which a crystallite is followed
-  const char* cannot_be_decided = "";  ///< why the claim about critical_size cannot be decided
+  const char* cannot_be_decided = "";  ///< why no claim on critical_size can be decided, or ""
 };
 inline constexpr std::array published_amplitudes = {
     PublishedAmplitude{0.04, 10, 300}, PublishedAmplitude{0.05, 10, 300},

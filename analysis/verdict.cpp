@@ -26,8 +26,8 @@ std::optional<std::size_t> runs_needed(const Estimate& estimate, double margin, 
   if (may_be_zero && (!planned || *planned > estimate.runs)) return planned;
   const double size = within ? std::abs(estimate.value) : estimate.value;
   const auto needed = runs_to_resolve(estimate, std::abs(size - margin), false);
-  // Estimate::spread is a mean over both sides of the interval, so `needed` may be too small if one
-  // side is much longer than the other. The claim is undecided, so it needs at least one more run.
+  // Estimate::spread is a mean over the lower and the upper half of the interval. If one half is
+  // much longer, `needed` may be too small. But an undecided claim needs at least one more run.
   return needed ? std::max(*needed, estimate.runs + 1) : needed;
 }
 

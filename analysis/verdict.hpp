@@ -58,7 +58,7 @@ struct Verdict {
   std::string waits_for = {};
   double margin = 0;
   Ruling ruling = Ruling::undecided;
-  std::size_t runs = 0;  ///< number of runs, or of pairs, as `counted` says
+  std::size_t runs = 0;  ///< number of runs or of pairs; see `counted`
   Counted counted = Counted::runs;
   std::size_t censored = 0;                ///< runs that ended before the event
   std::optional<std::size_t> runs_needed;  ///< for an undecided claim; empty if unknown

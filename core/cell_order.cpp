@@ -15,8 +15,8 @@ void CellOrder::choose_strip(std::size_t sites) {
   const double line = static_cast<double>(sites) / (1.0 * cells.rows * cells.layers);
   const double strip = std::min(std::max(kSitesPerRow / line, 3.0), 1.0 * cells.layers);
   cells.strip = static_cast<std::int32_t>(strip);
-  // Prefetch distance: the sites of one row (`strip` lines of cells along x) and of two more lines,
-  // plus 20 % for rows with more sites. A small cell fits in the cache and needs no prefetch.
+  // Sites are prefetched this many sites ahead: one row (`strip` lines of cells along x) and two
+  // lines, plus 20 %, since some rows have more sites. A small cell fits in the cache: no prefetch.
   constexpr std::size_t kSmall = 4000;
   const double ahead = sites < kSmall ? 0 : 1.2 * line * (cells.strip + 2);
   ahead_ = padded(static_cast<std::size_t>(ahead));

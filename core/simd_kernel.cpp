@@ -171,7 +171,7 @@ HWY_INLINE Vectors contact_sum(const StepTask& t, std::size_t block, const Vecto
 HWY_INLINE Vectors load_block(const StepTask& t, std::size_t g, V& margin) {
   constexpr std::size_t kLine = 64 / sizeof(double);
   for (std::size_t k = 0; t.ahead != 0 && k < 4 * kLanes; k += kLine) {
-    hwy::Prefetch(t.rows + 4 * (g + t.ahead) + k);  // harmless beyond the last row
+    hwy::Prefetch(t.rows + 4 * (g + t.ahead) + k);  // a prefetch beyond the last row is harmless
   }
   return load_rows(
       t.rows, [&](std::size_t lane) HWY_ATTR { return 4 * (g + lane); }, margin);

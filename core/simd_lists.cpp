@@ -219,7 +219,7 @@ struct Kept {
   // write_block pads the list of lane l to at least wall[l] + other_slots entries.
   std::int32_t rows[kLanes][2 * kMostNeighbours + 64];
   std::size_t count[kLanes], wall[kLanes];
-  std::size_t other_slots, wall_slots;  // largest slot counts of all lanes
+  std::size_t other_slots, wall_slots;  // numbers of slots: the largest of all lanes
 };
 
 HWY_INLINE void prune_block(const PruneTask& t, std::size_t block, Kept& kept) {

@@ -29,7 +29,7 @@ Simulation::Simulation(Cell cell, const Scene& scene, const State& state,
   if (state.position.cols() == 0 || state.position.cols() != state.velocity.cols()) {
     throw std::invalid_argument("a simulation needs at least one grain and one velocity per grain");
   }
-  // A list must never need two periodic images of one neighbour.
+  // A neighbour list can hold only one periodic image of each neighbour.
   if (!(cell_.depth > 2 + 4 * settings.lists.widest_margin(cell_.depth))) {
     throw std::invalid_argument("the depth of the cell, " + std::to_string(cell_.depth) +
                                 " d, is less than twice the cutoff of the neighbour list. A "

@@ -72,7 +72,7 @@ struct RunLineage {
 /// The stage and all stages before it, in order. Throws NotFound for an unknown stage.
 std::vector<Stage> chain_of(const Store& store, const std::string& id);
 
-/// The lineage of each stage of chain_of(). Throws StoreDamaged, which names a damaged event.
+/// The lineage of each stage of chain_of(). Throws StoreDamaged if an event is damaged.
 std::vector<RunLineage> run_lineage(const Store& store, const std::string& id);
 
 using RunLineages = std::map<std::string, RunLineage>;  ///< by id
@@ -89,7 +89,7 @@ struct ComputingTime {
   std::set<std::string> processors;  ///< names of the processors that computed the steps
 };
 
-/// The processor time up to cycle `last_cycle`. Throws StoreDamaged, which names a damaged event.
+/// The processor time up to cycle `last_cycle`. Throws StoreDamaged if an event is damaged.
 ComputingTime computing_time(const Store& store, const std::string& id, double last_cycle);
 
 struct ManifestText : events::ManifestRegistered {

@@ -221,7 +221,7 @@ bool holds_a_text(std::string_view stream) {
   return stream.starts_with("manifest/") || stream.starts_with("packing/");
 }
 
-/// Reads and checks a source. Keeps the manifests, packing files and `runs` (if empty, everything).
+/// Reads and checks a source. If `runs` is given, keeps only these runs, manifests, packing files.
 Source read_source(const std::filesystem::path& folder, const std::set<std::string>& runs) {
   const std::filesystem::path file = folder / "store.sqlite";
   if (!std::filesystem::exists(file)) {

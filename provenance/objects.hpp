@@ -25,7 +25,7 @@ class ObjectStore {
   /// or a folder in it is a file or a link.
   std::string put(std::span<const std::byte> bytes);
 
-  /// Reads an object. Throws StoreDamaged, which names the file, unless it has this size and hash.
+  /// Reads an object. Throws StoreDamaged, with the file's name, if its size or its hash differs.
   std::vector<std::byte> get(std::string_view sha256, std::uint64_t size) const;
 
   /// Whether the file of the object exists; its content is not checked.

@@ -51,8 +51,8 @@ std::map<std::string, TableRows> projection_rows(const sqlite::Database& databas
 NotFound unknown_stage(std::string_view id);
 NotFound unknown_checkpoint(std::string_view run, std::string_view sha256);
 
-/// Whether `wanted` has a place that the stage lacks, or requests a larger target or another
-/// checkpoint interval at a known place. `known`: the stored stage; nothing if there is none.
+/// Whether `wanted` adds a place to the stored stage `known`, or at a known place more cycles or
+/// another checkpoint interval. True if no stage is stored.
 bool adds_something(const std::optional<Stage>& known, const Membership& wanted);
 /// False if another run was declared for `place` after `run`, for example from another packing.
 bool holds_place(const sqlite::Database& database, std::string_view run, const Place& place);

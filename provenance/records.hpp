@@ -34,7 +34,7 @@ struct Ask {
   std::uint64_t ordinal = 0;                   ///< seq of the event that declared this request
 };
 
-/// The place of a stage in an experiment, and the request of the experiment.
+/// Where an experiment uses a stage (scale, variant, seed), and what it requests from the stage.
 struct Membership {
   Place place = {};
   Ask ask = {};

@@ -79,7 +79,7 @@ class Database {
   mutable std::unordered_map<std::string, Prepared> idle_;
 };
 
-/// A prepared statement; the database must outlive it. Parameters count from 1, columns from 0.
+/// A prepared statement; the database must outlive it. Parameters start at 1, columns at 0.
 class Statement {
  public:
   /// Binds the values to parameters 1, 2, ...

@@ -103,7 +103,7 @@ bool compares_waits(const ClaimSpec& claim) {
 
 const Estimator first_cycle_reached = {
     .name = "first_cycle",
-    .meaning = "log2 of the ratio of the first cycles at which the number is at least `reaches`",
+    .meaning = "log2 of a ratio of waiting times: cycles until the number is at least `reaches`",
     .key = "reaches",
     .decide = decide_waits,
     .words = words_of_waits};

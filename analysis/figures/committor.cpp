@@ -148,7 +148,7 @@ std::optional<double> grown_share(const Fates& fates) {
   return static_cast<double>(fates.of(Fate::grown)) / static_cast<double>(decided);
 }
 
-/// Fraction of decided controls that grew.
+/// Fraction of the clones of controls in which a crystallite grew; empty if there is no control.
 std::optional<double> background(const Amplitude& one) {
   return grown_share(sum_of(one.controls, chosen_rule));
 }

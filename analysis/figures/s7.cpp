@@ -91,9 +91,9 @@ Table density_table(std::string name, std::string first_column, Text x,
   return table;
 }
 
-/// Verdict on a difference: share of nuclei in one part of the cell, minus the share in another
-/// part. `side` returns 1 in the first part, -1 in the second part, 0 elsewhere, and nothing where
-/// nuclei are left out. The bootstrap resamples packings; a packing includes all its runs.
+/// Verdict on the share of nuclei in one part of the cell minus the share in another part. `side`
+/// returns 1 for a nucleus in the first part, -1 in the second part, and 0 elsewhere. A nucleus for
+/// which it returns nothing is left out. The bootstrap resamples packings, each with all its runs.
 Verdict share_verdict(const Claim& claim, std::string quantity, RunGroup runs, CellAxis axis,
                       const std::function<std::optional<int>(double place)>& side) {
   const Places places = places_of(runs, axis, Seen::first);

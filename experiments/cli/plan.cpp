@@ -89,7 +89,7 @@ const std::vector<std::string> kLammpsCaveats = {
     "LAMMPS computes only the shear. shearcell settles the packings of all runs.",
     "The results of LAMMPS differ from those of shearcell by rounding errors, which depend on "
     "the number of processes.",
-    "Runs by LAMMPS have their own ids. verify --replay, regenerate and prune skip these runs.",
+    "A run gets another id if LAMMPS computes it. verify --replay, regenerate and prune skip it.",
     "In runs by LAMMPS, the watchdog checks only checkpoints, not every 1024th step. These runs "
     "fail if the centre of a grain reaches the plane of a wall."};
 

@@ -67,7 +67,7 @@ void print_plan(const Store& store, const std::vector<CheckpointRecord>& records
   print_table(list_of(freed_by_run, [&](const auto& freed) -> Facts {
     const auto& [id, of_run] = freed;
     const Stage stage = store.stage(id);
-    // Lists all experiments that share the run, since each experiment loses the files.
+    // All experiments that use the run, because all of them lose the files.
     std::set<std::string> experiments;
     for (const Membership& m : stage.memberships) experiments.insert(m.place.experiment);
     // Files that an earlier `prune` recorded as pruned but did not delete before it was killed.

@@ -140,7 +140,7 @@ Facts facts_of(const Store& store, const Stage& stage) {
       {"parameters", effective_parameters(stage.resolved)}};
 }
 
-/// The record whose hash is the id of the run, without parameters that do not affect the run.
+/// The inputs of the run. Their hash is its id. Parameters without effect on the run are left out.
 Facts facts_of_id(const Stage& stage) {
   Facts facts;
   for (const auto& [key, value] : stage.resolved.items()) {

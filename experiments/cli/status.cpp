@@ -93,8 +93,8 @@ std::string describe_cycles(const Store& store, const Stage& stage, const Ask& a
                      end < asked && cycle >= end ? " (until)" : "");
 }
 
-/// Facts of a run as part of one experiment. The table shows the progress that a cluster task
-/// reports. JSON has the progress that the store records.
+/// The row of a run for one experiment. In the table, state and cycle come from the cluster task if
+/// it reports them. In JSON, they come from the store.
 Facts facts(const PlacedRun& listed, const Membership& shown, const View& view) {
   const Stage& stage = listed.stage;
   const auto held = view.holders.find(stage.id);

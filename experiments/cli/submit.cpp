@@ -183,7 +183,7 @@ void submit(const SubmitOptions& options, Context& context) {
   const QueueView queue = store ? view_queue(*store) : QueueView();
   if (!queue.problem.empty()) {
     if (!options.dry_run) throw ProgramError(queue.problem);
-    warn(context, "runs that are already queued are included: " + queue.problem);
+    warn(context, "the proposed jobs may include runs that are already queued: " + queue.problem);
   }
   if (!options.dry_run) prepare(*store, queue.submissions, plans);
   const auto busy = store ? busy_runs(*store, queue.submissions) : std::set<std::string>();

@@ -138,7 +138,7 @@ class Trajectory {
     }
   }
 
-  /// Writes the frame's row of a dataset. The first frame creates the dataset.
+  /// Writes `data` as the next row of a dataset. At the first frame, creates the dataset.
   void put(const std::string& path, hid_t type, const Shape& shape, const void* data,
            const std::string& unit = "") {
     Shape count = shape, start(shape.size() + 1, 0);

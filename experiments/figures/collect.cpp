@@ -114,7 +114,7 @@ void add_checkpoints(const Store& store, const Figure& figure, const MeasureOpti
   }
   if (!going_on.empty()) {
     collected.notes.push_back(
-        fmt::format("unfinished, and shown up to the last checkpoint of each run: {}: {}",
+        fmt::format("unfinished runs, shown only up to their last checkpoints: {}: {}",
                     counted(going_on.size(), "run"), some_of(going_on)));
   }
   if (std::ranges::count(figure.needs, cost_provider) > 0) add_core_times(store, collected);
@@ -183,7 +183,7 @@ void add_planned(const ReadManifest& manifest, CollectedRuns& collected) {
   });
 }
 
-/// Adds the name of the experiment to the run's swept values, variant and name.
+/// Adds the name of the experiment to the swept values, to the variant and to the name of the run.
 void add_experiment(FrameRun& run) {
   const std::string& experiment = run.place.experiment;
   run.place.swept["experiment"] = experiment;

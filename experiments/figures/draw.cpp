@@ -246,7 +246,7 @@ void make_of_runs(const Store& store, const WantedFigure& wanted, const FigureOp
   }
   static_cast<FigureResult&>(made) = figure.make(frame);
   for (Verdict& verdict : made.verdicts) {
-    // The claim may compare runs that were not selected.
+    // The estimate may be missing because runs of the claim were not selected.
     if (verdict.estimate || options.runs.variants.empty()) continue;
     verdict.note =
         fmt::format("only runs with {} are selected{}{}", fmt::join(options.runs.variants, ", "),

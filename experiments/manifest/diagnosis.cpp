@@ -339,7 +339,7 @@ void warn_of_ineffective(const Manifest& manifest, const Scale& scale,
 std::vector<string> advice_on(const Variant& variant, bool settles) {
   const Parameters &p = variant.parameters, &packing = variant.packing;
   std::vector<string> advice;
-  // [kg/m^3]. All known solids are within the range below.
+  // Density of a grain [kg/m^3]. All known solids are within the limits of the next line.
   const double density = 6 / std::numbers::pi * p.mass_kg / std::pow(p.diameter_m, 3);
   if (density < 0.1 || density > 1e5) {
     const bool in_mm = density * 1e9 > 100 && density * 1e9 < 3e4;
@@ -432,7 +432,7 @@ struct ScaleRuns {
   std::vector<FrameRun> runs = {};
 };
 
-/// Largest number of cycles between a value in the column and a checkpoint needed to compute it.
+/// A value in the column may also need an earlier checkpoint. Returns how many cycles earlier.
 std::uint64_t cycles_back(const string& column) {
   std::uint64_t most = 0;
   for (const string& name : providers_of({&column, 1})) {
@@ -574,7 +574,7 @@ std::vector<string> problems_of(const PlotSpec& plot, const ScaleRuns& here,
         all, [&](const ScaleRuns& other) { return curves_of(one, plot, other.runs) > 0; });
     if (curves > 1) {
       found.push_back(format(
-          "the style for {} matches {} curves, so the style is not used. Add more swept keys.",
+          "the style for {} matches {} curves, so it is not used. Add keys that choose one curve.",
           words_of(one.where), curves));
     } else if (curves == 0 && !of_another) {
       found.push_back(

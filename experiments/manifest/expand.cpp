@@ -97,7 +97,7 @@ PlannedRun planned_run(const Membership& common, const Scale& scale, const Varia
   run.packing = variant.packing;
   if (recorded == nullptr) {
     run.prepare = prepare_stage(run.packing, seed, file ? std::optional(file->file) : std::nullopt);
-    // Variants may share a packing, so its membership has "packing" in place of a variant.
+    // Variants may share a packing. Its membership therefore has the variant "packing".
     Membership& packing = run.prepare->memberships.emplace_back(common);
     packing.place.variant = "packing";
     packing.place.seed = seed;

@@ -219,9 +219,9 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
   visit(plot.x,
         {.name = "x",
          .doc = "`cycle` (default), a measure, a parameter, or an expression such as `1/period_s`. "
-                "If `x` has one value for each run, `y` is the value at `at_cycle`. If `x` is a "
-                "measure with one value for each run, such as `core_time_s`, each variant has one "
-                "point, at the mean over its runs",
+                "If `x` has one value for each run, `y` is the value at `at_cycle`. If this `x` "
+                "is a measure, such as `core_time_s`, all runs of a variant share one point, at "
+                "the mean of `x`",
          .names = can_be_x,
          .terms = terms});
   visit(plot.where,
@@ -360,13 +360,13 @@ void fields(Placed<ClaimSpec>& claim, const auto& visit) {
   visit(claim.cycles, {.name = "at_cycle", .range = kCycles, .doc = "cycle of the comparison"});
   visit(claim.cycles, {.name = "cycles",
                        .range = kCycles,
-                       .doc = "instead of `at_cycle`: the first and the last cycle of a range. The "
-                              "mean over this range is compared",
+                       .doc = "instead of `at_cycle`: the first and the last cycle of a range, "
+                              "over which the measure is averaged",
                        .example = "[1, 15]"});
   visit(claim.phi,
         {.name = "phi",
          .range = {0, 1},
-         .doc = "instead of `at_cycle`: a range of phi. The mean over this range is compared",
+         .doc = "instead of `at_cycle`: a range of phi, over which the measure is averaged",
          .example = "[0.646, 0.67]"});
   visit(claim.reaches, {.name = "reaches",
                         .range = {-1e15, 1e15},
@@ -1277,7 +1277,7 @@ struct Reader {
       reject(*also, "can only be used with means", "Leave it out.");
     } else if (const string twice = repeated_column(plot); !twice.empty()) {
       reject(also != nullptr ? *also : in, fmt::format("gives two columns the name {}", twice),
-             "Give one of them another name: `also: {NAME: measure}`.");
+             "Rename one of these columns: `also: {NAME: measure}`.");
     }
     if (const Field* field = find_field(plot.x)) {
       plot.x_symbol = field->symbol;

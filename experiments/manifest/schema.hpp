@@ -74,7 +74,7 @@ inline bool has_unit(const Field& field) {
   return !field.unit.empty() && field.unit != "1";
 }
 
-/// Completes the field for a member of type T: `names` for an enumeration, `whole` for integers.
+/// Sets `names` if the member has an enumeration as its type T, and `whole` if T is an integer.
 template <class T>
 constexpr Field with_type(Field field) {
   if constexpr (std::is_enum_v<T>) field.names = kNames<T>;

@@ -205,8 +205,8 @@ PlacedGrains placed(const PackingText& packing, const Parameters& p, std::uint64
   const auto count = static_cast<std::uint64_t>(grains.position.cols());
   if (count != p.grains) {
     refuse(packing.path, {}, "",
-           fmt::format("has {}, but the manifest has {}", counted(count, "grain"), p.grains), "",
-           fmt::format("Write `grains: {}`.", count));
+           fmt::format("has {}, but the manifest asks for {}", counted(count, "grain"), p.grains),
+           "", fmt::format("Write `grains: {}`.", count));
   }
   PlacedGrains made{make_cell(geometry(p), seed, poll), {}, describe(grains)};
   made.state = state_in(made.cell, grains, packing.path, p, limit);

@@ -30,7 +30,7 @@ struct Packings : MeasureOutcome {
   nlohmann::json runs = nlohmann::json::array();
   std::size_t frames = 0;
   double largest_step = 0;         ///< largest rounding step of a coordinate [d]
-  std::vector<std::string> notes;  ///< a line on runs that were left out
+  std::vector<std::string> notes;  ///< messages about runs that were left out
 };
 
 /// Encodes checkpoints of the experiments, in the order of `experiments`. If the checkpoints exceed

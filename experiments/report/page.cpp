@@ -149,7 +149,7 @@ json panel_json(const Table& table, const std::string& id, const ComputedFigure&
           {"csv", to_csv(table)}};
 }
 
-/// The newest record that has the same scale, states and analysis version as the figure.
+/// The newest record of a figure with the same lineage: manifests, runs, states, analysis version.
 std::optional<FigureRecord> recorded_as(const Store& store, const ComputedFigure& figure) {
   std::optional<FigureRecord> newest;
   for (FigureRecord& record : figure_records(store)) {
@@ -330,7 +330,7 @@ json workflow(const Content& content, const Experiment& experiment) {
   std::size_t left = 0;  // upper limit of the checkpoints that unfinished runs will still record
   for (const Stage& stage : experiment.runs) {
     for (const CheckpointHistory& c : content.runs.at(stage.id).checkpoints) ++in[c.record.state];
-    // The number of checkpoints that a packing needs to settle is unknown.
+    // A settling packing will record an unknown number of checkpoints.
     if (stage.kind == name_of(StageKind::prepare)) continue;
     std::vector<Ask> asks;
     for (const Membership& m : stage.memberships) {
@@ -574,7 +574,7 @@ void add_figures(Content& content) {
     const auto home = std::ranges::find(content.experiments, figure.experiment,
                                         [](const Experiment& e) { return e.manifest.experiment; });
     const bool at_home = home != content.experiments.end();
-    std::set<std::string>* said = nullptr;  // the list of messages that `why` is added to
+    std::set<std::string>* said = nullptr;  // the list to which the message `why` is added
     std::string why;
     try {
       const ComputedFigure made =
@@ -682,7 +682,7 @@ Report make_report(const Store& store, const ReportOptions& options) {
   content.experiments = experiments_of(store, options.runs);
   if (content.experiments.empty()) {
     throw NotFound(store.folder().string() +
-                   ": the store holds no experiment; `shearcell run` one first");
+                   ": the store has no experiment; compute one with `shearcell run`");
   }
   std::vector<std::string> names;
   for (const Experiment& experiment : content.experiments) {

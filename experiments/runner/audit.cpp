@@ -30,12 +30,12 @@ using nlohmann::json;
 
 void require_same(const std::string& what, const json& recorded, const json& expected) {
   if (recorded == expected) return;
-  throw StoreDamaged(fmt::format("its event has {} = {}, but its parameters give {}", what,
+  throw StoreDamaged(fmt::format("its event has {} = {}, but the run's parameters give {}", what,
                                  recorded.dump(), expected.dump()));
 }
 
-/// Throws StoreDamaged if the seed, a swept value or the variant contradicts the parameters. Skips
-/// a swept parameter that is not part of the run's id or has no effect on the run.
+/// Throws StoreDamaged if the seed, a swept value or the variant contradicts the parameters. Swept
+/// parameters that are not part of the run's id, or have no effect on the run, are not checked.
 void check_place(const Place& place, const StageInputs& stage, const json& resolved) {
   require_same("seed", place.seed, stage.seed);
   for (const auto& [key, value] : place.swept.items()) {
@@ -203,7 +203,7 @@ void check_pruned(const Store& store, DerivedCache& cache, MeasureCheck& check) 
   if (cache.is_unread()) check.absent = 0;  // unknown
 }
 
-/// Copies missing measures into the store. Returns why measures cannot be copied; "" if they can.
+/// Copies the measures that the store lacks. Returns why they cannot be copied; "" if they can.
 std::string copy_measures(Store& store, DerivedCache& from) {
   DerivedCache into(store.folder());
   MeasureSources sources(store);
@@ -254,7 +254,7 @@ std::vector<CheckpointRecord> sample(std::vector<CheckpointRecord> records, std:
 
 std::uint64_t seed_of(const Head& head) {
   const std::string digits = head.hash.substr(0, 12);
-  std::uint64_t seed = 0;  // stays 0 if the hash in a damaged log is not a number
+  std::uint64_t seed = 0;  // stays 0 if the log is damaged and the hash is not hexadecimal
   std::from_chars(digits.data(), digits.data() + digits.size(), seed, 16);
   return seed;
 }

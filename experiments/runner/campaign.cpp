@@ -182,7 +182,7 @@ class Campaign {
     try {
       return look_at(store_, store_.stage(job.id)).done;
     } catch (const std::exception&) {
-      return false;  // the next attempt to compute the stage reports why
+      return false;  // the next attempt to compute the stage reports the error
     }
   }
 
@@ -228,7 +228,7 @@ class Campaign {
     try {
       for (const Lease& lease : store_.leases()) holders.insert(describe(lease.holder));
     } catch (const std::exception&) {
-      return;  // the next attempt to compute a stage reports why
+      return;  // the next attempt to compute a stage reports the error
     }
     if (holders.empty()) return;  // the other process has just ended
     shown_held_ = held;

@@ -323,7 +323,7 @@ void measure_from(const Store& store, const Stage& stage, std::span<const Ask> a
   }
   std::vector<ToMeasure> todo;
   for (CheckpointMeasures& one : chosen) todo.push_back({&one});
-  // Figures need the measures in `also`, which the same analysis gives at no extra cost.
+  // The measures in `also` cost nothing extra in this analysis. Figures need them later.
   const MeasureOptions also = {.workers = options.workers,
                                .report = options.report,
                                .also = {scalars_provider, "crystallites"}};

@@ -106,7 +106,7 @@ struct PlannedStage {
   Outlook look = {};
 };
 
-/// Outlooks of the stages of all runs of the plans, each stage once, parents first. `store` may be
+/// The outlook of each stage that the plans need: each stage once, parents first. `store` may be
 /// null. Throws StoreDamaged like outlook().
 std::vector<PlannedStage> look_at(std::span<const Plan> plans, const Store* store);
 
@@ -161,8 +161,8 @@ class Rates {
  public:
   explicit Rates(const std::vector<Stage>& stages);
 
-  /// The mean rate of the stage's engine in the recorded runs. If these runs took less than 1 s in
-  /// total, a rate measured on another machine for about the stage's number of grains.
+  /// The mean rate of the recorded runs that used the stage's engine. If these runs took less than
+  /// 1 s in total, returns a rate that another machine reached with about as many grains.
   Rate of(const Stage& stage) const;
 
  private:

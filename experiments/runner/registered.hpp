@@ -22,9 +22,9 @@ struct RegisteredManifest : ManifestText {
   std::vector<std::string> figures;
 };
 
-/// Display names of variants. variant_names() gives the names for each manifest. A settled
-/// packing is called "packing". If an experiment has different packings at one scale, the values
-/// that differ are added: "packing N=600".
+/// Display names of the variants of each manifest (by variant_names()) and of settled packings. A
+/// packing is called "packing". If the packings of an experiment at one scale have different
+/// parameters, these are added: "packing N=600".
 class VariantNames {
  public:
   using Labels = std::map<std::string, std::vector<VariantLabel>>;  ///< by SHA-256 of the manifest

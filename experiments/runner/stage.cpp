@@ -112,7 +112,7 @@ ReadyStage ready_stage(const Store& store, Stage stage) {
   return {std::move(stage), std::move(inputs), scene, std::move(protocol)};
 }
 
-/// The state from which an attempt computes a stage.
+/// The state from which an attempt starts to compute a stage.
 struct Beginning {
   Cell cell;
   State state;
@@ -483,7 +483,7 @@ class StageAttempt {
                          {"step", failure.step}});
       return StageOutcome::failed;
     } catch (const std::exception& failure) {
-      // The disk, memory or store failed. If start_stage() threw, the start may still be recorded.
+      // The disk, memory or store failed. The start may be recorded even if start_stage() threw.
       release(failure);
       throw;
     }
@@ -653,7 +653,7 @@ std::optional<Checkpoint> compute_again(Store& store, Replay& replay, const Stag
   return std::nullopt;
 }
 
-/// Compares the states. If they are equal, compares the numbers that were recorded with the state.
+/// Compares `found` with the recorded state. If they are equal, compares other recorded numbers.
 void compare_again(const Store& store, const Checkpoint& found, Replay& replay) {
   const CheckpointRecord& record = replay.record;
   const std::string hash = state_hash(found);

@@ -124,7 +124,7 @@ void write_stderr(std::string_view text) noexcept {
 
 std::function<void(std::size_t, std::size_t)> terminal_counter(std::string what) {
   if (!moves_cursor(stderr)) {
-    // All copies of the function share the stopwatch.
+    // The function may be copied. All copies share this stopwatch.
     return [what = std::move(what), said = std::make_shared<Stopwatch>()](std::size_t done,
                                                                           std::size_t total) {
       if (said->seconds() < 10) return;

@@ -294,8 +294,8 @@ TEST(OwnPlot, AgainstAParameterComparesTheLastCycleThatAllRunsHave) {
   const Table& table = result.tables.at(0);
   ASSERT_EQ(table.columns.back(), "cycle");
   for (const TableRow& row : table.rows) EXPECT_EQ(row.back(), TableCell(2.0));
-  EXPECT_TRUE(
-      has(caption_of("A title", result.tables), "At cycle 2, the last that all runs have."));
+  EXPECT_TRUE(has(caption_of("A title", result.tables),
+                  "At cycle 2, the last one that all runs have recorded."));
 }
 
 TEST(OwnPlot, AtACycleNeedsThatCycleAlone) {

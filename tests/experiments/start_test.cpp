@@ -474,9 +474,9 @@ TEST_F(FromAFile, TheIdHoldsTextUnitAndWhetherItSettles) {
 
 TEST_F(FromAFile, WhatDoesNotFitTheCellIsRefusedWithTheRemedy) {
   write_grains("x_d,y_d,z_d\n1,1,1\n3,1,1\n");
-  EXPECT_NE(
-      refusal_of(manifest("")).find("has 2 grains, but the manifest has 300. Write `grains: 2`."),
-      std::string::npos);
+  EXPECT_NE(refusal_of(manifest(""))
+                .find("has 2 grains, but the manifest asks for 300. Write `grains: 2`."),
+            std::string::npos);
   const std::string two =
       "  walls: smooth\n  grains: 2\n  nominal_packing_fraction: 0.03\n"
       "  fill_packing_fraction: 0.02\n  height_over_width: 1\n";
