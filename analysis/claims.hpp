@@ -50,7 +50,7 @@ struct ClaimSpec {
   /// "{amplitude_rad}" is replaced by the amplitude.
   std::string statement = {};
   Relation is = Relation::same;
-  bool optional = false;               ///< no verdict if a side has no runs
+  bool optional = false;               ///< no verdict if a group has no runs
   std::string cannot_be_decided = {};  ///< why no number of runs can decide the claim, or ""
   /// The claim belongs to a shipped manifest, and the user's manifest lists the claim's figure. If
   /// problems_of_sides() finds a problem in a listed claim, the verdict uses no runs. In any other

@@ -15,7 +15,7 @@ using BySize = Eigen::Array<double, GrowthCurve::largest, 1>;
 using FromSize = Eigen::Matrix<double, GrowthCurve::largest, GrowthCurve::largest>;
 
 /// Columns of GrowthCurve::Sums: moments 0 to 2 of the number of crystallites, moments 0 and 1 of
-/// the excess of growing crystallites, and the excess summed from this size upwards.
+/// the excess (growing minus shrinking ones), and the excess summed from this size upwards.
 enum Column : Eigen::Index { all_0, all_1, all_2, excess_0, excess_1, tail };
 
 double log_size(Eigen::Index k) {

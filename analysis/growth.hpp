@@ -88,8 +88,7 @@ class GrowthCurve {
   Interval repeated_critical_size(std::size_t runs) const;
 
  private:
-  /// Sums for each size (row): moments of the crystallites near the size, and the excess of growing
-  /// crystallites of this size and above. The sums of several runs can be added.
+  /// Sums for each size (row), see Column in growth.cpp. The sums of several runs can be added.
   using Sums = Eigen::Array<double, largest, 6>;
   std::vector<Sums> runs_;
 

@@ -157,8 +157,8 @@ MeasuredCurve pair_correlation(const MeasureInput& input) {
 }
 
 /// S(k) of the interior grains: |sum exp(i k r)|^2 / n, averaged over wave vectors in bins of |k|.
-/// Wave vectors are from the reciprocal lattice of the region, for which a uniform density gives
-/// zero. Each bin uses at most 48 wave vectors, evenly spaced in their lexical order.
+/// The wave vectors are reciprocal lattice vectors of the region, so a uniform density gives S = 0.
+/// Each bin uses at most 48 wave vectors, evenly spaced in the order of their three indices.
 MeasuredCurve structure_factor(const MeasureInput& input) {
   const InteriorRegion region = interior_region(input.checkpoint->cell, pose_of(*input.checkpoint));
   const Eigen::Matrix3Xd sites = interior_sites(input);
