@@ -16,7 +16,7 @@
 namespace shearcell {
 
 /// What happened to the crystallites of one size. A crystallite is counted at most once. It is not
-/// counted if, for example, most of its grains are in a crystallite of the same size.
+/// counted if, for example, most of its grains are later in a crystallite of the same size.
 struct GrowthCount {
   std::size_t grew = 0;  ///< more than half of the grains are in larger crystallites
   /// Like `grew`, but the main contributor to the later crystallite was a larger crystallite.

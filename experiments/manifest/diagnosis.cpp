@@ -241,8 +241,8 @@ bool is_formula(const string& text) {
   return first != text.npos && string_view("=+-@").find(text[first]) != string_view::npos;
 }
 
-/// Checks that each label fits a variant of any scale and has visible characters, and that no two
-/// variants of one scale have names that look the same.
+/// Checks that each label belongs to a variant of at least one scale and has visible characters,
+/// and that no two variants of one scale have names that look the same.
 void check_labels(const Manifest& manifest, const std::vector<Scale>& scales,
                   ProblemList& problems) {
   const auto reject = [&](const VariantLabel& label, const string& problem, const string& got,
