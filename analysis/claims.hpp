@@ -50,7 +50,7 @@ struct ClaimSpec {
   /// amplitude_rad`, for example, "{amplitude_rad}" is replaced by the amplitude.
   std::string statement = {};
   Relation is = Relation::same;
-  bool optional = false;               ///< no verdict if a side has no runs
+  bool optional = false;               ///< no verdict if a group has no runs
   std::string cannot_be_decided = {};  ///< why no number of runs can decide the claim, or ""
   /// True if a shipped manifest defines the claim, and the user's manifest lists its figure. If
   /// problems_of_sides() finds a problem in such a claim, its verdict uses no runs. In any other

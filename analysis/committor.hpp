@@ -20,7 +20,7 @@ inline constexpr std::size_t cycles_gone = 2;
 /// Lower limits of the size bins of followed crystallites: 3 to 4, 5 to 7, 8 to 12 and 13 to 20
 /// grains. In each state at most one crystallite of each bin is followed. [choice]
 inline constexpr std::int32_t followed_bins[] = {3, 5, 8, 13, 21};
-/// Number of cycles for which the grains of descendants are remembered. [choice]
+/// The descendants of this number of past cycles are used to recognize the next one. [choice]
 inline constexpr std::size_t remembered_cycles = 3;
 
 /// Labels of the crystallites to follow: in each size bin, the one that has the lowest grain id.

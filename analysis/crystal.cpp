@@ -22,8 +22,8 @@ constexpr std::array<double, 7> order_weight = {
     1.0 / 256,        2 * 42.0 / 256,    2 * 420.0 / 4096, 2 * 420.0 / 1024,
     2 * 126.0 / 1024, 2 * 2772.0 / 1024, 2 * 924.0 / 4096};
 
-/// Sums over bonds of weight times Y_6m(x, y, z) / C, where C is the coefficient of Y_6m. Y_6m / C
-/// is (x + iy)^m times a polynomial in z.
+/// Sums of weight * Y_6m(x, y, z) / C over the bonds. C is the coefficient of Y_6m: Y_6m / C is
+/// (x + iy)^m times a polynomial in z.
 struct HarmonicSums {
   double order0 = 0;
   std::array<double, 6> real{};

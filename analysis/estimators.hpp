@@ -36,7 +36,7 @@ struct Estimator {
   /// Returns a Scalar, which computes one number per run. The estimate is the mean of these numbers
   /// or, for two groups, the difference of their means. If null, `decide` gives the verdict.
   Scalar (*scalar)(const ClaimSpec& claim) = nullptr;
-  /// Gives the verdict if `scalar` is null. `b` is empty if has_one_side() is true for the claim.
+  /// Decides the claim if `scalar` is null. Group `b` is empty if the claim has only one group.
   Verdict (*decide)(const ClaimSpec& claim, const Claim& stated, RunGroup a, RunGroup b) = nullptr;
   /// Returns the estimated quantity in words, for sentences. If this is null, Scalar::name is used.
   std::string (*words)(const ClaimSpec& claim) = nullptr;
@@ -74,8 +74,8 @@ Scalar over_phi(const std::string& name, const std::string& column, double low, 
 /// Decides the claim from the mean of `a` minus the mean of `b`. Runs that share a packing form
 /// pairs. Pairs are compared by Student's t, and runs without a partner are left out. If there are
 /// no pairs, the interval is Welch's. Runs that end before an event are censored (censored.hpp). A
-/// verdict needs least_runs runs or pairs. At least three quarters of each group must have
-/// the number and, if there are pairs, a partner. Missing runs may bias the verdict. [choice]
+/// verdict needs least_runs runs or pairs. At least three quarters of the runs in each group must
+/// have a number and, if there are pairs, a partner: missing runs may bias the verdict. [choice]
 Verdict compare(const Claim& claim, const Scalar& scalar, RunGroup a, RunGroup b);
 
 /// Decides the claim from the mean over runs minus the published number.

@@ -39,7 +39,7 @@ struct Figure {
   std::function<FigureResult(const Frame& frame)> make;
   FigureForm form = FigureForm::curves;
   std::vector<std::string> keys = {};    ///< parameters in which the curves differ
-  std::vector<std::string> claims = {};  ///< ids of its claims, without the part after '@'
+  std::vector<std::string> claims = {};  ///< ids of the figure's claims, without '@...'
   /// Names of the providers (measures.hpp) that the figure needs besides scalars_provider.
   std::vector<std::string> needs = {};
   /// First and last cycle that the figure uses. It uses all checkpoints within these cycles. If

@@ -14,8 +14,8 @@ using Selection = std::span<const std::size_t>;
 using BySize = Eigen::Array<double, GrowthCurve::largest, 1>;
 using FromSize = Eigen::Matrix<double, GrowthCurve::largest, GrowthCurve::largest>;
 
-/// Columns of GrowthCurve::Sums. In the row of each size: moments 0 to 2 of the number of
-/// crystallites, moments 0 and 1 of the excess of growing ones, and its sum from this size upwards.
+/// Columns of GrowthCurve::Sums: moments 0 to 2 of the number of crystallites, moments 0 and 1 of
+/// the excess (growing minus shrinking ones), and the excess summed from this size upwards.
 enum Column : Eigen::Index { all_0, all_1, all_2, excess_0, excess_1, tail };
 
 double log_size(Eigen::Index k) {

@@ -16,7 +16,7 @@
 namespace shearcell {
 
 /// What happened to the crystallites of one size. A crystallite is counted at most once. It is not
-/// counted if, for example, most of its grains are in a crystallite of the same size.
+/// counted if, for example, most of its grains are later in a crystallite of the same size.
 struct GrowthCount {
   std::size_t grew = 0;  ///< more than half of the grains are in larger crystallites
   /// Like `grew`, but a larger crystallite contributed the most grains to the later crystallite.
@@ -88,8 +88,7 @@ class GrowthCurve {
   Interval repeated_critical_size(std::size_t runs) const;
 
  private:
-  /// Sums for each size (row): moments of the crystallites near the size, and the excess of growing
-  /// crystallites of this size and above. The sums of several runs can be added.
+  /// Sums for each size (row), see Column in growth.cpp. The sums of several runs can be added.
   using Sums = Eigen::Array<double, largest, 6>;
   std::vector<Sums> runs_;
 

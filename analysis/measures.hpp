@@ -67,7 +67,7 @@ struct Measure {
   std::string_view meaning;
   MeasureKind kind = MeasureKind::number;
   std::string_view x = {}, x_unit = {};  ///< x axis of a curve
-  GrainScale scale = {};                 ///< for a measure of each grain
+  GrainScale scale = {};                 ///< used if `kind` is `grains`
   RunValue (*of_run)(const FrameRun& run) = nullptr;
   /// Name for use in sentences; if empty, `name` is used. Required for kinds `run` and `grains`.
   std::string_view words = {};
@@ -83,7 +83,7 @@ struct CycleEnergies {
 /// What providers know about the run of a checkpoint. The runner fills it in, since analysis does
 /// not depend on manifests and protocols (experiments/runner/measure_sources.hpp).
 struct RunFacts {
-  nlohmann::json parameters = {};   ///< by key of the manifest
+  nlohmann::json parameters = {};   ///< values by their keys in a manifest
   std::optional<Drive> drive = {};  ///< only of a shear
   /// Continues the simulation from the checkpoint for `seconds`, between upright walls that are
   /// held in place. Both `rest` and `next_cycle` throw NumericalFailure.

@@ -109,7 +109,7 @@ WaveVector largest_components(const InteriorRegion& region) {
 
 constexpr auto kWaveBins = static_cast<std::size_t>(largest_wave_per_d / wave_bin_per_d);
 
-// Calls visit(bin, n) for wave vectors k with |k| < largest_wave_per_d, in lexical order. n are the
+// Calls visit(bin, n) for wave vectors k with |k| < largest_wave_per_d, ordered by n, the
 // components of k. Only one of k and -k is visited.
 template <class Visit>
 void for_each_wave_vector(const InteriorRegion& region, const WaveVector& most,
@@ -157,8 +157,8 @@ MeasuredCurve pair_correlation(const MeasureInput& input) {
 }
 
 /// S(k) of the interior grains: |sum exp(i k r)|^2 / n, averaged over wave vectors in bins of |k|.
-/// Wave vectors are from the reciprocal lattice of the region, for which a uniform density gives
-/// zero. Each bin uses at most 48 wave vectors, evenly spaced in their lexical order.
+/// The wave vectors are reciprocal lattice vectors of the region, so a uniform density gives S = 0.
+/// Each bin uses at most 48 wave vectors, evenly spaced in the order of their components.
 MeasuredCurve structure_factor(const MeasureInput& input) {
   const InteriorRegion region = interior_region(input.checkpoint->cell, pose_of(*input.checkpoint));
   const Eigen::Matrix3Xd sites = interior_sites(input);

@@ -60,7 +60,7 @@ struct Selected {
   std::vector<const FrameRun*> partners = {};
 };
 
-/// The value of the column at the run's checkpoint, minus the mean of its values for the partners.
+/// The column's value for the run at the checkpoint, minus the mean of the partners' values.
 double value_of(const NumberColumn& column, const Selected& one,
                 const CheckpointMeasures* checkpoint) {
   const double own = column(*one.run, checkpoint);
@@ -157,7 +157,7 @@ struct Trace {
   const FrameRun* run;
   std::vector<Sample> samples = {};    ///< in the order of the checkpoints
   Missing missing = Missing::nothing;  ///< why y is missing, if y is a measure of the whole run
-  /// For each column: RunValue::above if the run ended before the event; otherwise NaN.
+  /// For each column: the bound RunValue::above if the run ended before the event; otherwise NaN.
   std::vector<double> above = {};
 };
 

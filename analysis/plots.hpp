@@ -84,9 +84,9 @@ struct PlotSpec {
   std::optional<std::array<std::uint64_t, 2>> cycles = {};
   std::string column = {};  ///< name of y's column, without unit; "": the measure's name
   std::string x_symbol = {}, x_unit = {};  ///< of the x axis, if x is a parameter
-  /// True if the plot belongs to a shipped manifest and the user's manifest lists its figure. Then
-  /// labels in the user's manifest replace the labels in `series`. The styles in `series` are
-  /// used only if `series` contains every parameter in which the curves differ.
+  /// True if the plot is from a shipped manifest and a user's manifest lists the plot's figure.
+  /// Labels in the user's manifest then replace the labels in `series`. The styles in `series` are
+  /// then used only if `series` contains every parameter in which the curves differ.
   bool listed = false;
 };
 

@@ -29,7 +29,7 @@ struct VoronoiDiagram {
   std::vector<double> surface;     ///< A_i, the area of all faces, also on wall planes [d^2]
   std::vector<std::size_t> first;  ///< n + 1 entries: grain i has faces first[i] to first[i+1] - 1
   std::vector<VoronoiFace> faces;
-  /// Volumes of the wall grains' cells inside the walls [d^3]; empty with WallGrainCells::skip.
+  /// Volumes of the cells of wall grains, only inside the walls [d^3]. WallGrainCells::skip: empty.
   std::vector<double> wall_grain_volume;
 
   std::span<const VoronoiFace> faces_of(std::size_t grain) const {

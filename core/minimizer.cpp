@@ -29,8 +29,9 @@ double residual_of(const Forces& forces, const Cell& cell, const Scene& scene) {
   return std::max(std::sqrt(largest), wall) / force_unit(scene);
 }
 
-// Sums over the grains and the moving wall; the terms of the wall are weighted by its mass. Plain
-// loops over the ids fix the order of the additions, so every machine computes the same bits.
+// Sums of f v, v^2 and f^2 over the grains and the moving wall. The wall's v^2 is multiplied by its
+// mass, and its f^2 is divided by its mass. Plain loops over the ids fix the order of the
+// additions, so every machine computes the same bits.
 struct Sums {
   double power, velocity, force;
 };

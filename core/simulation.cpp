@@ -141,8 +141,8 @@ double Simulation::over_blocks(const StepTask& task) {
   });
 }
 
-// Calls the kernel with constants for which it moves no grain and writes the contact sums into
-// sum_. Returns false if the lists were not valid.
+// Writes the contact sums into sum_. Calls the kernel with constants for which no grain moves.
+// Returns false if the lists were not valid.
 bool Simulation::sum_contacts() {
   set_contacts(pose_.tan_theta);
   StepTask task = task_;

@@ -49,7 +49,7 @@ double largest_overlap(const WatchTask& task, std::size_t g) {
   return 1 - std::sqrt(nearest);
 }
 
-// Weights w of the contacts of a grain (watchdog.hpp), and the factor 5 in the moving wall's bound.
+// Weights w in the bound of a grain, and factor 5 in the bound of the moving wall (watchdog.hpp).
 constexpr double kOfGrain = 2, kOfFixedWall = 1, kOfMovingWall = 1.25, kOnMovingWall = 5;
 
 // Calls visit(unit normal, weight w, moving) for every contact of grain g. `moving` says whether

@@ -18,7 +18,7 @@ struct SettleParameters {
   double kinetic_tolerance = 1e-8;  ///< largest kinetic energy per grain, divided by P d^3
   double time_limit = 60;           ///< largest settling time [s]; a longer time is an error
   double overlap_limit =
-      WatchdogLimits{}.overlap;  ///< overlap limit after the wall has pressed the grains [d]
+      WatchdogLimits{}.overlap;  ///< overlap limit after the grains are pressed together [d]
 };
 
 /// Estimated time [s] that the moving wall needs to press loose grains into a dense packing, plus

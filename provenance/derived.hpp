@@ -28,9 +28,9 @@ struct DerivedObject {
   std::vector<std::byte> content;
 };
 
-/// Short digests of the objects of one checkpoint. Each key is the first word of the measure, "-"
-/// and a short hash of measure and version. When a checkpoint is pruned, the log stores the digests
-/// of its measures, because these measures cannot be computed again.
+/// Short digests of the objects of one checkpoint. A key has the form WORD-HASH: the measure's
+/// first word, and a short hash of measure and version. When a checkpoint is pruned, the log stores
+/// the digests of its measures, because these measures cannot be computed again.
 using Digests = std::map<std::string, std::string>;
 /// The entry of one object in Digests.
 Digests::value_type digest_entry(const DerivedObject& object);

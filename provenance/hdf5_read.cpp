@@ -163,7 +163,7 @@ Object::Object(Bytes file, std::uint64_t address, std::string path)
         }
       }
     }
-    if (messages != 0) fail("has fewer messages than the number in its header");
+    if (messages != 0) fail("has fewer messages than its header announces");
   } catch (const Short&) {
     fail("is truncated");
   }
@@ -264,7 +264,7 @@ Object::Bytes Object::attribute(const std::string& name, std::string_view type,
   const auto shape = shape_of(attribute.space);
   if (!shape || !shape->empty()) refuse(below(name), "is not a single value");
   if (!type.empty() && !is_type(attribute.type, type))
-    refuse(below(name), "has a wrong number type");
+    refuse(below(name), "has the wrong data type");
   if (attribute.data.size() < size) refuse(below(name), "is truncated");
   return attribute.data.first(size);
 }
@@ -299,7 +299,7 @@ Object::Bytes Object::values(const std::string& name, std::string_view type, std
   if (!dataset.layout_ || !dataset.links_.empty()) {
     dataset.fail("is not stored contiguously in this file");
   }
-  if (!dataset.type_ || !is_type(*dataset.type_, type)) dataset.fail("has a wrong number type");
+  if (!dataset.type_ || !is_type(*dataset.type_, type)) dataset.fail("has the wrong data type");
   const auto shape = dataset.space_ ? shape_of(*dataset.space_) : std::nullopt;
   if (!shape || shape->size() != (columns == 0 ? 1 : 2) ||
       (columns != 0 && shape->back() != columns)) {

@@ -127,7 +127,7 @@ class Projector {
         "'declared', state), target_cycles = max(target_cycles, excluded.target_cycles)",
         id_, event_.seq, d.parent, d.kind, d.resolved.dump(), d.grains, ask.target_cycles,
         event_.recorded_at);
-    // A repeated declaration (no larger target, same interval) makes the run the last one declared.
+    // A run declared again becomes the last one, unless its target grows or its interval changes.
     run("INSERT INTO memberships VALUES(?,?,?,?,?,?,?,?,?,?,?,?) ON CONFLICT DO UPDATE SET "
         "ordinal = iif(excluded.target_cycles <= target_cycles AND excluded.checkpoint_every = "
         "checkpoint_every, excluded.ordinal, ordinal), "
@@ -163,8 +163,8 @@ class Projector {
 
   void operator()(const events::RunCompleted& e) const {
     const json ended = member_of(e.summary, "ended"), asked = member_of(ended, "memberships");
-    // The run is not complete if its target was raised during the computation, or if it ended early
-    // (`until`) and an experiment was added during the computation.
+    // The run is not complete if its target was raised while it was computed. A run that
+    // `until` ended is also not complete if an experiment was added while it was computed.
     run("UPDATE runs SET error = '', ends = json_insert(ends, '$[#]', json(?2)), state = "
         "iif(target_cycles > ?3 OR ?4 < (SELECT count(*) FROM memberships WHERE run = ?1), "
         "'declared', 'completed') WHERE id = ?1",

@@ -29,7 +29,7 @@ struct Place {
 struct Ask {
   std::uint64_t checkpoint_every = 1;          ///< cycles between checkpoints
   std::uint64_t target_cycles = 0;             ///< number of cycles to compute
-  nlohmann::json until = nullptr;              ///< condition that may end the stage earlier
+  nlohmann::json until = nullptr;              ///< may end the stage before target_cycles
   std::vector<double> checkpoint_phases = {};  ///< extra checkpoints: fractions of a cycle
   std::uint64_t ordinal = 0;                   ///< seq of the event that declared this request
 };
@@ -107,8 +107,8 @@ struct Stage {
   std::vector<Membership> memberships;  ///< in the order in which they were declared
 };
 
-/// The unit that users count, list and average: a place (experiment, scale, variant and seed) and
-/// the last stage computed for it. A stage that two experiments share belongs to two runs.
+/// What users count, list and average as one run: an experiment, scale, variant and seed, and the
+/// last stage computed for them. A stage that two experiments share belongs to two runs.
 struct Run {
   Place place = {};
   Ask ask = {};

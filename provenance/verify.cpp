@@ -232,7 +232,7 @@ VerifyReport Store::verify(const std::optional<Head>& against) const {
     if (integrity.step() && integrity.text(0) != "ok") {
       database_.require_readable("read");
       add_error(report, database_.name(),
-                fmt::format("SQLite finds the database damaged: {}; restore it from a backup",
+                fmt::format("SQLite reports a damaged database: {}; restore it from a backup",
                             integrity.text(0)));
     }
     report.head = log_.head();

@@ -192,7 +192,7 @@ std::optional<Estimate> half_size(const Amplitude& one, std::size_t rule) {
   return GrowthCurve(by_packing_and_size(one, rule), *background(one)).critical_size();
 }
 
-/// Points with fewer decided clones than this are not drawn. [choice]
+/// Each point is drawn from at least this number of clones with a known outcome. [choice]
 constexpr std::size_t least_drawn = 8;
 
 Table probability_table(std::span<const Amplitude> all) {

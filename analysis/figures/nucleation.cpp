@@ -133,8 +133,8 @@ double exponent_of_walls(std::span<const FrameRun> runs, Region region) {
   return 2.0 / 3 * std::log(largest / smallest) / std::log(many / few);
 }
 
-/// The verdict on the claim that the exponent is 1. The margin is half of the distance between 1
-/// and exponent_of_walls(). Empty if all cells have one size or exponent_of_walls() >= 1.
+/// The verdict on the claim that the rate is proportional to the number of grains (exponent 1). The
+/// margin is (1 - exponent_of_walls()) / 2. Empty if it is not positive, or if all N are equal.
 std::vector<Verdict> rate_follows_volume(std::span<const FrameRun> runs, Region region,
                                          const std::string& id, const std::string& text) {
   if (runs_by(runs, "grains").size() < 2) return {};

@@ -45,8 +45,8 @@ struct SpeedResult {
   std::string state_hash = {};  ///< hash after 200 steps; equal for all results of one size
 };
 
-/// Measures each size with each kernel and number of threads. The cell has rough walls, the
-/// parameters of Table I and A = 0.0833. Its packing is pressed together first. For N > 18200 a
+/// Measures the speed for each size, kernel and number of threads. The cell has rough walls, the
+/// parameters of Table I and A = 0.0833. The packing is first pressed together. For N > 18200 a
 /// smaller packing is repeated along the depth; SpeedResult::grains includes all copies.
 /// Throws std::runtime_error if kernels give different states after 200 steps. Shares are measured
 /// with one thread.

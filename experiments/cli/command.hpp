@@ -157,10 +157,10 @@ auto list_of(const auto& items, const auto& facts) {
   return list;
 }
 
-/// One value of a result. JSON prints it under its key. A value that has a heading is also printed
+/// One value of a result. JSON output has it under `key`. A value with a heading is also printed
 /// as a table cell or a line of text.
 struct Fact {
-  std::string key;  ///< "" if JSON does not print the value
+  std::string key;  ///< "" if JSON output omits the value
   nlohmann::json value;
   std::optional<std::string> heading = {};  ///< heading of the column or line
   std::optional<std::string> text = {};     ///< text to print instead of the value

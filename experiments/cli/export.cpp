@@ -382,8 +382,8 @@ void add_export(CLI::App& app, Context& context) {
   command
       ->add_option(
           "--cycles", options->cycles,
-          "Only checkpoints of these cycles (default: all that the experiments request; not with "
-          "ro-crate)")
+          "Only checkpoints of these cycles. Default: all that the experiments request. Not "
+          "possible with --to ro-crate")
       ->type_name("A[:B[:STEP]]");
   command->add_flag("--metres", options->metres, "Extended XYZ in SI units, not in diameters");
   command->add_option("--license", options->licence, "URI of the licence of the data")

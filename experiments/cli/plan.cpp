@@ -178,7 +178,7 @@ void print_until(const std::vector<Line>& lines, const nlohmann::json& left, dou
   if (ends.empty()) return;
   fmt::print("      `until` ({}): ", fmt::join(ends, "; "));
   if (left.is_null()) {
-    fmt::print("fewer particle-steps; estimated only after this `until` has ended a run\n");
+    fmt::print("fewer particle-steps; an estimate needs a run that `until` has ended\n");
   } else {
     fmt::print("about {:.3g} particle-steps ({:.0f} %) if runs end like earlier runs\n",
                left.get<double>(), at_most > 0 ? 100 * left.get<double>() / at_most : 100);

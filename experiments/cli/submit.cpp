@@ -199,7 +199,7 @@ void submit(const SubmitOptions& options, Context& context) {
 
 std::string check_sbatch(const std::string& text) {
   if (!text.starts_with("--") || text.size() == 2) {
-    return fmt::format("'{}' is not a long option of sbatch such as --sbatch=--qos=long", text);
+    return fmt::format("'{}' is no option of the form --NAME. Example: --sbatch=--qos=long", text);
   }
   const std::string option = text.substr(0, text.find('='));
   for (const std::string taken : {"--array", "--clusters", "--test-only", "--wait", "--wrap"}) {

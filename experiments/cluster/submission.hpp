@@ -112,7 +112,7 @@ std::vector<Submission> unfinished_submissions(const Store& store);
 std::uint64_t merge_tasks(Store& store, const Submission& submission);
 
 /// Runs that are queued or being computed: all runs of submissions with jobs in the queue, all runs
-/// that programs on this machine compute, and the packings of these runs that are not yet settled.
+/// that a process is computing, and the packings of these runs that are not yet settled.
 std::set<std::string> busy_runs(const Store& store, const std::vector<Submission>& open);
 
 /// Writes `FOLDER.progress.json` for the task's store FOLDER, in one atomic step. Other machines

@@ -28,7 +28,7 @@ void add_columns(const Measures& measures, ExportedState& frame) {
   }
 }
 
-// Task for LAMMPS: a shear with its drive, or a settling with upright walls and settling forces.
+// How LAMMPS continues the stage: shear with its drive, or settling with its forces, walls upright.
 std::optional<LammpsTask> continued(const Checkpoint& c, const Stage& stage) {
   const auto kind = value_of<StageKind>(stage.kind);
   if (!kind || kind == StageKind::stiffen || c.state.position.cols() == 0) return std::nullopt;

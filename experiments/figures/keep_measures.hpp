@@ -10,9 +10,9 @@
 namespace shearcell {
 
 /// Computes and caches all measures for tables and figures, so that the files of `records` can be
-/// deleted. Measures all checkpoints of the runs, because a later checkpoint's measure may need an
-/// earlier file, and uses each checkpoint interval that an experiment requests. Simulated measures
-/// are computed if a figure of a manifest needs them.
+/// deleted. Measures all checkpoints of the runs, because a later one may need an earlier file.
+/// Does so for each interval between checkpoints that an experiment requests. Simulated measures
+/// are computed only if a figure of a manifest needs them.
 ///
 /// Removes from `records` each checkpoint with a measure that could not be computed; the outcome
 /// gives the reason. If this measure needs the file of an earlier checkpoint that is already

@@ -87,7 +87,7 @@ void find_states(const json& entry, const RunLineage& run, FigureInput& input) {
     input.fault = "the states in the log differ from the figure's record";
 }
 
-// The swept values of the run, as the version of the manifest that the figure used gives them.
+// The swept values of the run, from the version of the manifest that the figure used.
 json swept_values_of(const Stage& stage, const FigureInput& input) {
   for (const auto& [place, ask, newest] : stage.memberships) {
     // Earlier programs named a variant of an older manifest "VARIANT,manifest=VERSION".

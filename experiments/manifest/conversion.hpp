@@ -66,10 +66,9 @@ bool may_differ_in_settling(std::string_view key);
 /// True for steps_per_cycle and settle_time_step_s, which a manifest may set to `auto`.
 bool takes_auto(std::string_view key);
 
-/// Sets the parameter so that the time step is 0.3547 of the stability limit, as in Table I,
-/// rounded to give a whole number of steps in a cycle or in 2 s of settling. The parameters of
-/// Table I give the time step of Table I. The result may be out of range; check it with
-/// check_value().
+/// Sets the parameter so that the time step is about 0.3547 times the stability limit, as in Table
+/// I, and a cycle, or 2 s of settling, is a whole number of steps. The parameters of Table I give
+/// the time step of Table I. The result may be out of range; check it with check_value().
 void resolve_auto(std::string_view key, Parameters& parameters);
 
 /// Mean overlap of touching grains at rest [d], to leading order: 0.75 p d/k. By the virial, a

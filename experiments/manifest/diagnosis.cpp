@@ -210,7 +210,7 @@ struct VariantCheck {
       refuse(start.at, "start", "lacks seed", "Give the seed of the recorded run: `seed: 3`.");
     }
     if (!start.run.empty() && find("start_seed") != nullptr) {
-      report("start_seed", "cannot be used with checkpoint, which names one run", "Leave it out.");
+      report("start_seed", "cannot be used with checkpoint, which has one seed", "Leave it out.");
     }
     if (scale.settle_at.line > 0) {
       refuse(scale.settle_at, "settle", "has no effect with start, because nothing settles",
@@ -241,8 +241,8 @@ bool is_formula(const string& text) {
   return first != text.npos && string_view("=+-@").find(text[first]) != string_view::npos;
 }
 
-/// Checks that each label fits a variant of any scale and has visible characters, and that no two
-/// variants of one scale have names that look the same.
+/// Checks that each label belongs to a variant of at least one scale and has visible characters,
+/// and that no two variants of one scale have names that look the same.
 void check_labels(const Manifest& manifest, const std::vector<Scale>& scales,
                   ProblemList& problems) {
   const auto reject = [&](const VariantLabel& label, const string& problem, const string& got,
@@ -449,8 +449,8 @@ string words_of_checkpoint(const string& where, std::uint64_t back) {
 }
 
 // Whether the run will have a checkpoint at a cycle from `first` to `end`, and another checkpoint
-// `back` cycles earlier. If the first multiple of `every_cycles` is no such cycle, no later
-// multiple is. So only the first cycle, this multiple and the last cycle are tried.
+// `back` cycles earlier. Tries the first cycle, the first multiple of `every_cycles`, and the last
+// cycle. If the first multiple does not fit, no later multiple fits.
 bool has_checkpoint(const FrameRun& run, std::uint64_t first, std::uint64_t end,
                     std::uint64_t back) {
   const std::uint64_t every = run.ask.checkpoint_every, last = run.ask.target_cycles;

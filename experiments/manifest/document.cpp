@@ -203,7 +203,7 @@ class TreeBuilder : public YAML::EventHandler {
     }
     if (node.kind == Node::Kind::list || node.kind == Node::Kind::map) check_depth(at, depth);
     for (const Node& part : node.parts) {
-      if (node.kind == Node::Kind::map) count_value(at);  // each key of a map counts, too
+      if (node.kind == Node::Kind::map) count_value(at);  // a key counts as a value
       check_size(part, at, depth + 1);
     }
   }

@@ -28,8 +28,8 @@ namespace {
 using std::string;
 using std::string_view;
 
-/// What a column can contain. In a kWall column, the value 0 or the first type marks a grain, and a
-/// larger value marks a wall grain.
+/// What a column can contain. In a kWall column, 0 (in a LAMMPS data file: type 1) marks a grain,
+/// and a larger value marks a wall grain.
 enum Quantity { kX, kY, kZ, kVx, kVy, kVz, kDiameter, kId, kWall, kQuantities };
 constexpr const char* kNamesInMessages[] = {"x",  "y",        "z",  "vx",  "vy",
                                             "vz", "diameter", "id", "type"};
@@ -37,7 +37,7 @@ constexpr const char* kNamesInMessages[] = {"x",  "y",        "z",  "vx",  "vy",
 /// What a column with one of these names contains. If several columns could contain the same
 /// quantity, those with the lowest rank are read.
 struct Meaning {
-  string_view names;        ///< in lower case; if `count` is 1, the k-th is `first` + k - 1
+  string_view names;        ///< in lower case; if count = 1, name k gives quantity first + k - 1
   int first = kQuantities;  ///< first quantity of the column; kQuantities: unknown
   int count = 1;            ///< number of values in the column
   double factor = 1;        ///< 2 for radii

@@ -161,7 +161,7 @@ void fields(Scale& scale, const auto& visit) {
                 "measure reaches the value. Default: the run ends at `cycles`",
          .besides = ", or `none`",
          .example = "{crystalline_percent: 10, extra_cycles: 15}",
-         .wanted = "a measure with its value"});
+         .wanted = "a measure with the value to reach"});
   visit(scale.looks, {.name = "looks",
                       .range = {least_runs, ManifestLimits::runs},
                       .doc = "planned looks (interim analyses), each given by the number of seeds "
@@ -402,8 +402,8 @@ void fields(Manifest& manifest, const auto& visit) {
                             .folds = true});
   visit(manifest.of,
         {.name = "of",
-         .doc = "experiments in the store whose runs the plots and claims use, instead of the keys "
-                "that define runs. Selections may use the key `experiment`",
+         .doc = "experiments in the store. The plots and claims use their runs, and this manifest "
+                "defines no runs. A selection of runs may contain the key `experiment`",
          .example = "[drag, timestep]"});
   visit(manifest.figures,
         {.name = "figures", .doc = "figures of the supplement to draw", .example = "[S2]"});
@@ -489,7 +489,7 @@ string remedy_of(const Field& about) {
                                : fmt::format("It takes `{}`{}.", about.example, about.besides);
 }
 
-// The remedy for a value that is not a map. For `start`: a map with the key that probably fits.
+// The remedy if a value is not a map. For `start` it is a map of the likely key and this value.
 string remedy_for(const Node& in, const Field& about) {
   if (about.name != "start" || !in.is_scalar()) return remedy_of(about);
   const auto holds = [&](char c) { return in.text.find(c) != string::npos; };
@@ -766,7 +766,7 @@ struct Reader {
     read(in, with_type<T>(about), value.emplace());
   }
 
-  // Reads a text. `about` decides if it is an expression, a free text, a listed or any other name.
+  // Reads an expression, a free text, a choice from a list, or a name. `about` decides which.
   void read(const Node& in, const Field& about, string& value) {
     const string& text = in.text;
     const bool takes_expressions = in.is_scalar() && !about.terms.empty();

@@ -172,8 +172,8 @@ std::span<const Field> schema() {
           "addition jams at 0.547"),
       row<&P::wall_grain_recess_diameters>(
           "wall_grain_recess_diameters", "", "d", {0, 0.5}, kPrepare,
-          "largest distance of wall grain centres behind the wall plane. Measures that need the "
-          "surface of a rough wall assume 0.25"),
+          "wall grain centres lie behind the wall plane, at most this far. Measures that use the "
+          "surface of a rough wall assume the value 0.25"),
       row<&P::wall_grain_draw>(
           "wall_grain_draw", "", "1", {0, 1e6}, {.stage = StageKind::prepare, .omitted_at = "0"},
           "each value gives other random positions of the wall grains for the same seed"),

@@ -20,15 +20,15 @@ namespace shearcell {
 /// How a parameter enters the identity of a run. A parameter of `prepare` enters the records of all
 /// stages, since settling comes first; any other parameter enters the record of its own stage only.
 struct Identity {
-  std::optional<StageKind> stage = {};     ///< first stage whose id it changes; empty: none
-  std::optional<ProtocolKind> under = {};  ///< recorded only under this protocol; empty: any
-  /// If the parameter has this value (written as in a manifest), records omit it. All runs that are
-  /// older than the parameter have this value. The default may be another value.
+  std::optional<StageKind> stage = {};     ///< first affected stage; empty: not in an id
+  std::optional<ProtocolKind> under = {};  ///< recorded only for this protocol; empty: for all
+  /// The record omits the parameter if it has this value, written as in a manifest. All runs that
+  /// are older than the parameter have this value, which may differ from the default.
   std::string_view omitted_at = {};
   /// Every new record holds this value, whatever the value of the parameter, because the parameter
   /// is no longer part of the identity. Records of older runs may hold other values.
   std::string_view recorded_as = {};
-  /// Records do not hold the parameter. They hold the id of the parent stage that it selects.
+  /// Records hold the id of the parent stage that the parameter selects, not the parameter itself.
   bool selects_parent = false;
 
   /// Whether runs with different values of the parameter have different ids.

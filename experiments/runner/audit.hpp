@@ -28,7 +28,7 @@ std::vector<CheckpointRecord> replayable(const Store& store);
 std::vector<CheckpointRecord> sample(std::vector<CheckpointRecord> records, std::size_t count,
                                      std::uint64_t seed);
 
-/// A seed for sample() that differs after every new event of the log.
+/// A seed for sample(). Each new event of the log changes the seed.
 std::uint64_t seed_of(const Head& head);
 
 struct MeasureCheck {

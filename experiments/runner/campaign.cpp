@@ -32,7 +32,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// held: another process computes the stage. ended: this campaign does not complete the stage.
+// held: another process is computing the stage. ended: this campaign will not complete the stage.
 enum class JobState { waiting, running, held, done, ended };
 
 // Time between two checks of a stage that another process computes.

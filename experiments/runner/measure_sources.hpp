@@ -20,7 +20,7 @@ namespace shearcell {
 class MeasureSources {
  public:
   explicit MeasureSources(const Store& store) : store_(&store) {}
-  /// For one run with this id, without a store. Earlier checkpoints are not available.
+  /// Sources for one run with this id, without a store. Earlier checkpoints are not available.
   MeasureSources(const std::string& id, const Stage& stage);
 
   /// Reads the log of a run, unless it has been read. Call this before you pass a checkpoint of the

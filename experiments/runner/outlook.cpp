@@ -79,7 +79,7 @@ End end_by(const Stage& stage, const Ask& ask, std::span<const CheckpointRecord>
     if (std::fmod(one.cycle, every) != 0) continue;
     const auto known = measures.find(one.sha256);
     if (known == measures.end() || !known->second.numbers.contains(until->measure)) {
-      // For a request beyond the stage's target the recorded end is not valid: measure first.
+      // The recorded end is not valid for a request of more cycles than the stage: measure first.
       if (ask.target_cycles <= stage.target_cycles) {
         end.reached = recorded_reach(stage, *until, every);
       }
@@ -337,8 +337,8 @@ void measure_from(const Store& store, const Stage& stage, std::span<const Ask> a
   }
 }
 
-/// The largest number of cycles that the stage has reached among requests without this `until`; 0
-/// if there is none. Considers only requests that were recorded when the stage ended.
+/// The largest number of cycles that a request asks for and the stage has reached; 0 if there is
+/// none. Ignores requests with this `until`, and requests recorded after the stage ended.
 double longest_length(const Stage& stage, const json& ended, const json& until) {
   const json known = member_of(ended, "memberships");
   std::size_t left = known.is_number_unsigned() ? known.get<std::size_t>() : 0;
@@ -472,8 +472,8 @@ std::optional<double> expected_end(std::span<const Stage> stages, const json& un
 
 namespace {
 
-// Rates [particle-steps/s] that are assumed if the store has no measured rates. `bench speed` with
-// rough cells measured them on one core of an EPYC (Zen 4). LAMMPS (29 Sep 2021): SCALING.md.
+// Rates [particle-steps/s] for stores without measured rates. Source: `bench speed` for cells with
+// rough walls, on one core of an EPYC (Zen 4). For LAMMPS (29 Sep 2021) the source is SCALING.md.
 struct MeasuredRate {
   double grains, rate;
 };

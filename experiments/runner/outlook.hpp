@@ -128,8 +128,8 @@ std::vector<CheckpointRecord> checkpoints_for(const Store& store, const Stage& s
                                               const MeasureOptions& options = {});
 
 /// The recorded Outlook::ended if an `until` completed the stage before `target_cycles`; otherwise
-/// null. If the stage continued beyond this `until` because another experiment asked for more
-/// cycles, the larger number of cycles is added as "cycles_asked".
+/// null. If another experiment made the stage continue beyond this `until`, the number of cycles
+/// that this experiment asked for is added as "cycles_asked".
 nlohmann::json end_of(const Stage& stage);
 
 /// end_of() as text: "crystalline_percent >= 10 at cycle 25 and 15 more cycles"; "" for null.

@@ -626,7 +626,7 @@ void diverge(Replay& replay, std::uint64_t step, const std::string& message,
   replay.divergence = Divergence{first, step, field, -1, 0, message};
 }
 
-/// Recomputes the state at the record's step; empty if the replay does not reach this step.
+/// Recomputes the state at the step of replay.record; empty if the replay does not reach it.
 std::optional<Checkpoint> compute_again(Store& store, Replay& replay, const StageOptions& options) {
   const CheckpointRecord& record = replay.record;
   const ReadyStage plan = ready_stage(store, store.stage(record.run));
