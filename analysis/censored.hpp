@@ -42,7 +42,7 @@ std::optional<Estimate> censored_mean(std::span<const CensoredValue> values,
 /// in sigma: G. Y. Zou and A. Donner, Stat. Med. 27, 1693 (2008). For independent groups Welch's
 /// degrees of freedom are used. If `paired`, a[k] and b[k] share a packing. The correlation of the
 /// two means is then the correlation of the residuals (G. Y. Zou, Psychol. Methods 12, 399 (2007)).
-/// Pairs with a censored value are included. The residual of a censored value is its expectation
+/// Pairs with a censored value are included. For a censored value, the residual is the expectation
 /// value. Treating a[k] - b[k] as one censored value would give a bias, since b[k] decides whether
 /// the difference is censored. If no value is censored, the interval is Welch's interval or, for
 /// pairs, Student's interval. Empty if a group has fewer than two observed values.

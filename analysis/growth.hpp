@@ -15,8 +15,8 @@
 
 namespace shearcell {
 
-/// What happened to the crystallites of one size. A crystallite is counted at most once. It is not
-/// counted if, for example, most of its grains are later in a crystallite of the same size.
+/// What happened to the crystallites of one size. A crystallite is counted at most once. A
+/// crystallite that keeps its size is not counted: most of its grains stay in one of equal size.
 struct GrowthCount {
   std::size_t grew = 0;  ///< more than half of the grains are in larger crystallites
   /// Like `grew`, but a larger crystallite contributed the most grains to the later crystallite.

@@ -184,7 +184,7 @@ std::vector<Provider> profile_providers() {
                      "crystalline grains if |q6 - q6 of a lattice| may be up to `q6_window`", curve,
                      "q6_window", "1"},
                     {"crystalline_by_phi_local_percent", "%",
-                     "crystalline grains if phi_local must reach `phi_local_threshold`", curve,
+                     "crystalline grains whose phi_local is at least `phi_local_threshold`", curve,
                      "phi_local_threshold", "1"},
                     {"largest_by_face", "1",
                      "grains in the largest crystallite, as a function of the smallest face that "

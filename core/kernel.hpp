@@ -75,7 +75,7 @@ struct StepTask {
   /// Position of each grain when the list was built, in the frame that moves with the shear [d].
   /// The rounding error of single precision is included in `margin_loss`.
   const float* reference[3] = {};
-  double frame_height = 0;  ///< height at which the moving frame is at rest [d]
+  double frame_height = 0;  ///< height at which the frame has no velocity [d]
   double tan_theta = 0;     ///< tan(theta) at the end of the step
   double margin_loss = 0;   ///< part of each margin lost to shear and rounding [d]
   /// Prefetch distance in rows, see CellOrder::ahead(); 0 disables the prefetch.

@@ -163,8 +163,8 @@ class Projector {
 
   void operator()(const events::RunCompleted& e) const {
     const json ended = member_of(e.summary, "ended"), asked = member_of(ended, "memberships");
-    // The run is not complete if its target was raised while it was computed. A run that
-    // `until` ended is also not complete if an experiment was added while it was computed.
+    // The run is not complete if its target was raised while it was computed. A run that ended
+    // early, by `until`, is also not complete if another experiment has asked for it meanwhile.
     run("UPDATE runs SET error = '', ends = json_insert(ends, '$[#]', json(?2)), state = "
         "iif(target_cycles > ?3 OR ?4 < (SELECT count(*) FROM memberships WHERE run = ?1), "
         "'declared', 'completed') WHERE id = ?1",

@@ -148,8 +148,9 @@ class Store {
       const std::string& id, std::vector<std::string>* damage = nullptr,
       std::uint64_t before_step = UINT64_MAX);
 
-  /// Appends an event that changes no run. Streams: "figure/drag/desk/S2" for FigureGenerated, the
-  /// run's for ReplayVerified and ReplayDiverged, kSubmissions for CampaignSubmitted and JobQueued.
+  /// Appends an event that changes no run. FigureGenerated has a stream such as
+  /// "figure/drag/desk/S2", ReplayVerified and ReplayDiverged have the stream of the run, and
+  /// CampaignSubmitted and JobQueued have kSubmissions.
   /// Throws ConcurrencyConflict if `seen` is given and the stream does not have `seen` events.
   void record(std::string_view stream, const NewEvent& event,
               std::optional<std::uint64_t> seen = std::nullopt);

@@ -120,8 +120,8 @@ std::optional<double> slurm_seconds(const std::string& time) {
   constexpr double no_limit = std::numeric_limits<double>::infinity();
   if (lower(time) == "unlimited" || lower(time) == "infinite") return no_limit;
   if (time.size() > kLongest || !std::regex_match(time, found, form)) return std::nullopt;
-  // After the days D, the first number is hours in D-H, D-H:M and D-H:M:S. H:M:S begins with hours,
-  // but M and M:S begin with minutes.
+  // D-H, D-H:M and D-H:M:S have hours after the days. H:M:S begins with hours, but M and M:S begin
+  // with minutes.
   double sum = 0, unit = found[1].matched || found[4].matched ? 3600 : 60;
   for (std::size_t part = 1; part <= 4; ++part) {
     if (!found[part].matched) continue;

@@ -27,7 +27,7 @@ struct Share {
   std::vector<std::string> packings;  ///< ids of the `prepare` stages
   std::vector<std::string> runs;      ///< ids of the unfinished stages of these packings
   double particle_steps = 0;          ///< remaining work, including the packings
-  double core_seconds = 0;            ///< time for this work on one core [s] (Rates in outlook.hpp)
+  double core_seconds = 0;            ///< time on one core [s], estimated with Rates (outlook.hpp)
 
   void add(const Share& other);
 };

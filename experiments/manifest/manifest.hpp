@@ -157,7 +157,7 @@ struct Start {
   std::string file = {};  ///< relative to the folder of the manifest
   std::optional<LengthUnit> unit = {};
   std::string experiment = {};
-  std::string scale = {};    ///< of the recorded run; "": the scale of the shear
+  std::string scale = {};    ///< scale of the recorded run; "": the scale of the sheared run
   std::string variant = {};  ///< swept values; "" if not given
   /// First digits of the run's id, given by `checkpoint` instead of experiment, scale and variant.
   std::string run = {};

@@ -220,7 +220,7 @@ std::span<const Field> schema() {
           "limit, 0.355"),
       row<&P::pause_s>("pause_s", "", "s", above(0, 1e6),
                        {.stage = StageKind::shear, .under = ProtocolKind::paused},
-                       "under protocol paused: duration of the rest without tilt after each cycle "
+                       "with protocol `paused`: duration of the pause at zero tilt after each cycle "
                        "(B.5); rounded to whole time steps"),
       row<&P::pause_walls>(
           "pause_walls", "", "", {},

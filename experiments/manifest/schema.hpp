@@ -54,7 +54,7 @@ struct Field {
   Identity identity = {};        ///< of a parameter
   std::string_view doc = {};
   std::span<const std::string_view> names = {};  ///< the allowed values of a choice
-  std::string_view besides = {};                 ///< added to the values in messages: ", or `none`"
+  std::string_view besides = {};                 ///< appended to the allowed values in messages
   bool whole = false;                            ///< only whole numbers are allowed
   std::span<const std::string_view> terms = {};  ///< names allowed in expressions; if empty, none
   std::string_view example = {};                 ///< as YAML

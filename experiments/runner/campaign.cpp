@@ -234,7 +234,7 @@ class Campaign {
     shown_held_ = held;
     progress_.say(
         fmt::format("waiting for {} that another process is computing ({}). This process takes "
-                    "over a stage if the other one ends or does not answer for {} s",
+                    "over a stage if the other process ends or is silent for {} s",
                     counted(held, "stage"), fmt::join(holders, "; "), kLongestLeaseMs / 1000),
         true);
   }
