@@ -197,11 +197,14 @@ std::optional<Verdict> decide_one(const ClaimSpec& claim, const Frame& frame) {
   }
   if (!problems.empty()) sides.runs = {};
   if (sides.lacks_one && !claim.listed) {
-    const std::string& name = sides.names[sides.runs[0].empty() ? 0 : 1];
-    const std::string reach = claim.cycles ? " of " + estimator_of(claim).scalar(claim).reach : "";
-    return decide(
-        decided, "difference in " + words_of(claim), std::nullopt, 0,
-        fmt::format("no run{} has a checkpoint{}", name.empty() ? "" : " with " + name, reach));
+    nlohmann::json where = claim.where;
+    where.update(claim.between.at(sides.runs[0].empty() ? 0 : 1));
+    const Estimator& estimator = estimator_of(claim);
+    const bool of_cycles = claim.cycles && estimator.scalar != nullptr;
+    return decide(decided, "difference in " + words_of(claim), std::nullopt, 0,
+                  fmt::format("no run{} has a checkpoint{}",
+                              where.empty() ? "" : " with " + shearcell::words_of(where),
+                              of_cycles ? " of " + estimator.scalar(claim).reach : ""));
   }
   return at_looks(claim, decided, sides, frame);
 }

@@ -55,8 +55,12 @@ bool has_parameters(const FrameRun& run, const nlohmann::json& where) {
 std::vector<const FrameRun*> runs_with(const nlohmann::json& where,
                                        std::span<const FrameRun> runs) {
   std::vector<const FrameRun*> found;
+  std::map<std::string_view, std::string_view> experiments;  // by stage id: the first experiment
   for (const FrameRun& run : runs) {
-    if (has_parameters(run, where)) found.push_back(&run);
+    if (!has_parameters(run, where)) continue;
+    const std::string_view experiment = run.place.experiment;
+    const auto [first, fresh] = experiments.try_emplace(run.stage.id, experiment);
+    if (fresh || first->second == experiment) found.push_back(&run);
   }
   std::vector<const FrameRun*> as_stated = found;
   std::erase_if(as_stated, [](const FrameRun* run) { return run->place.swept.contains("engine"); });

@@ -114,8 +114,9 @@ const CheckpointMeasures* checkpoint_at(const FrameRun& run, double cycle);
 /// [0.04, 0.05], "grains": {"min": 6000}}. A list matches any of its values. A range has `min`,
 /// `max` or both. The relative tolerance of numbers is 1e-6, since a manifest may round them.
 bool has_parameters(const FrameRun& run, const nlohmann::json& where);
-/// The runs whose parameters match `where`. Runs that `run --engine` added are left out if
-/// the other matching runs belong to only one variant.
+/// The runs whose parameters match `where`. If several experiments share a matching run, only the
+/// run of the first of them is returned. Runs that `run --engine` added are left out if the other
+/// matching runs belong to only one variant.
 std::vector<const FrameRun*> runs_with(const nlohmann::json& where, std::span<const FrameRun> runs);
 
 /// Whether a value matches `wanted`, which is a value, a list of values or a range.

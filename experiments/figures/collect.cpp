@@ -192,23 +192,20 @@ void add_experiment(FrameRun& run) {
   run.name = fmt::format("{}{}{}", experiment, run.name.empty() ? "" : ": ", run.name);
 }
 
-/// Joins the runs of several experiments into one list. If experiments share a stage, only the run
-/// of the first experiment stays in the list. Adds a note on each experiment without runs.
+/// Puts the runs of several experiments in the order of `experiments`. A run that they share occurs
+/// once for each of them (see runs_with()). Adds a note on each experiment without runs.
 void join(const std::vector<std::string>& experiments, CollectedRuns& collected) {
-  std::set<std::string> known;
   std::vector<FrameRun> joined;
   for (const std::string& experiment : experiments) {
-    bool any = false;
-    for (FrameRun& run : collected.runs) {
-      if (run.place.experiment != experiment) continue;
-      any = true;
-      if (!known.insert(run.stage.id).second) continue;
-      add_experiment(run);
-      joined.push_back(std::move(run));
-    }
-    if (!any) collected.notes.push_back("left out: experiment without runs: " + experiment);
+    const std::size_t before = joined.size();
+    std::ranges::copy_if(collected.runs, std::back_inserter(joined), [&](const FrameRun& run) {
+      return run.place.experiment == experiment;
+    });
+    if (joined.size() > before) continue;
+    collected.notes.push_back("left out: experiment without runs: " + experiment);
   }
   collected.runs = std::move(joined);
+  std::ranges::for_each(collected.runs, add_experiment);
   std::ranges::for_each(collected.pending, add_experiment);
 }
 
@@ -419,7 +416,9 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
       if (all_seeds) add_planned(manifest, collected);
     }
     if (!wanted.figure.of.empty()) join(wanted.figure.of, collected);
-    for (const FrameRun& run : collected.runs) collected.variants.push_back(run.place.swept);
+    for (const FrameRun* run : runs_with(nlohmann::json::object(), collected.runs)) {
+      collected.variants.push_back(run->place.swept);
+    }
     std::erase_if(collected.runs, [&](const FrameRun& run) {
       return wanted.figure.uses && !wanted.figure.uses(run);
     });

@@ -100,19 +100,24 @@ Place first_place(const Stage& stage) {
 
 namespace {
 
-/// Replaces each experiment whose manifest has the key `of` by the experiments listed in `of`.
+/// Replaces each experiment whose manifest has the key `of` by the experiments listed in `of` that
+/// have runs of their own.
 std::vector<std::string> with_members(const Store& store,
                                       const std::vector<std::string>& experiments) {
   std::vector<std::string> all;
   if (experiments.empty()) return all;
-  const std::vector<RegisteredManifest> manifests = newest_manifests(store);
+  std::map<std::string, std::vector<std::string>> members;  // by registered experiment: key `of`
+  for (const RegisteredManifest& one : newest_manifests(store)) {
+    members[one.experiment] = recorded_manifest(one.text).of;
+  }
   for (const std::string& experiment : experiments) {
-    std::vector<std::string> members;
-    for (const RegisteredManifest& one : manifests) {
-      if (one.experiment == experiment) members = recorded_manifest(one.text).of;
-    }
-    if (members.empty()) members = {experiment};
-    all.insert(all.end(), members.begin(), members.end());
+    const auto owns_runs = [&](const std::string& member) {
+      const auto found = members.find(member);
+      return found != members.end() && found->second.empty();
+    };
+    const std::vector<std::string>& of = members[experiment];
+    std::ranges::copy_if(of, std::back_inserter(all), owns_runs);
+    if (of.empty()) all.push_back(experiment);
   }
   return all;
 }
