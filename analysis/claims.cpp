@@ -114,21 +114,31 @@ Verdict decided_by(const ClaimSpec& claim, const Claim& stated, RunGroup a, RunG
   return verdict;
 }
 
-/// A look (interim analysis) at n seeds uses the runs of the first n seeds, after these have ended.
-/// Returns the verdict of the first look that decides the claim. If no looks are planned, there is
-/// one look, at all seeds. Until a look decides, the verdict is undecided. Its numbers are then
-/// those of the seeds before the first unfinished seed. Unplanned seeds are used only in the note.
+/// A look (interim analysis) at n seeds uses the runs of the first n seeds that both sides have,
+/// after these have ended. Returns the verdict of the first look that decides the claim. If no
+/// looks are planned, there is one look, at all seeds of either side. Until a look decides, the
+/// verdict is undecided. Its numbers are then those of the seeds before the first unfinished seed.
+/// Seeds that no look includes are used only in the note.
 Verdict at_looks(const ClaimSpec& claim, Claim stated, const ClaimSides& sides,
                  const Frame& frame) {
   std::set<std::uint64_t> begun, pending;
-  for (const auto& side : sides.runs) {
-    for (const FrameRun* run : side) begun.insert(run->place.seed);
+  std::array<std::set<std::uint64_t>, 2> of_side;
+  const ClaimSides planned = sides_of(claim, frame.pending);
+  for (std::size_t k = 0; k < 2; ++k) {
+    for (const FrameRun* run : sides.runs[k]) begun.insert(run->place.seed);
+    for (const FrameRun* run : planned.runs[k]) pending.insert(run->place.seed);
+    for (const auto* runs : {&sides.runs[k], &planned.runs[k]}) {
+      for (const FrameRun* run : *runs) of_side[k].insert(run->place.seed);
+    }
   }
-  for (const auto& side : sides_of(claim, frame.pending).runs) {
-    for (const FrameRun* run : side) pending.insert(run->place.seed);
-  }
+  const bool paired = !frame.looks.empty() && !has_one_side(claim);
+  const auto lacks = [&](std::uint64_t seed) {
+    const auto has = [&](const auto& side) { return side.contains(seed); };
+    return paired ? !std::ranges::all_of(of_side, has) : std::ranges::none_of(of_side, has);
+  };
+  std::erase_if(begun, lacks);
   std::vector<std::uint64_t> seeds = frame.seeds;
-  std::erase_if(seeds, [&](std::uint64_t s) { return !begun.contains(s) && !pending.contains(s); });
+  std::erase_if(seeds, lacks);
   const auto of_first = [&](std::size_t count) {
     const std::span first = std::span(seeds).first(count);
     std::array<std::vector<const FrameRun*>, 2> runs = sides.runs;
@@ -140,12 +150,13 @@ Verdict at_looks(const ClaimSpec& claim, Claim stated, const ClaimSides& sides,
     return decided_by(claim, stated, runs[0], runs[1]);
   };
   if (seeds.empty()) return decided_by(claim, stated, sides.runs[0], sides.runs[1]);
-  const auto first_pending =
-      std::ranges::find_if(seeds, [&](std::uint64_t seed) { return pending.contains(seed); });
-  const auto ended = static_cast<std::size_t>(first_pending - seeds.begin());
   std::vector<std::size_t> looks = frame.looks;
   std::erase_if(looks, [&](std::size_t look) { return look > seeds.size(); });
   if (looks.empty()) looks = {seeds.size()};
+  seeds.resize(looks.back());
+  const auto first_pending =
+      std::ranges::find_if(seeds, [&](std::uint64_t seed) { return pending.contains(seed); });
+  const auto ended = static_cast<std::size_t>(first_pending - seeds.begin());
   stated.level = look_level(looks);
   Verdict verdict;
   std::size_t taken = 0;
@@ -174,6 +185,10 @@ Verdict at_looks(const ClaimSpec& claim, Claim stated, const ClaimSides& sides,
     }
   }
   if (!frame.looks.empty()) verdict.looks = looks, verdict.look = taken;
+  if (taken == looks.back() && verdict.ruling == Ruling::undecided && !frame.looks.empty()) {
+    verdict.runs_needed.reset();
+    add_note(verdict.note, "the last planned look has not decided the claim");
+  }
   std::erase_if(begun, [&](std::uint64_t seed) { return std::ranges::count(seeds, seed) > 0; });
   if (begun.empty()) return verdict;
   const Verdict all = decided_by(claim, stated, sides.runs[0], sides.runs[1]);

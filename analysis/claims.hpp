@@ -42,8 +42,8 @@ struct ClaimSpec {
   /// Parameters that select the runs of each side. The second is empty if the claim has one side.
   std::array<nlohmann::json, 2> between = {nlohmann::json::object(), nlohmann::json::object()};
   std::optional<PublishedSpec> published = {};
-  /// Tolerance of the claim, in units of the measure; for waiting times, of log2(ratio of a to b). If
-  /// the margin is 0, the published number is an upper or lower bound.
+  /// Tolerance of the claim, in units of the measure; for waiting times, of log2(ratio of a to b).
+  /// If the margin is 0, the published number is an upper or lower bound.
   double margin = 0;
   bool relative = false;  ///< the margin limits the relative difference
   /// The claim as a sentence. If empty, the sentence follows from the keys. With `for_each:

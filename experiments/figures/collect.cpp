@@ -198,9 +198,8 @@ void join(const std::vector<std::string>& experiments, CollectedRuns& collected)
   std::vector<FrameRun> joined;
   for (const std::string& experiment : experiments) {
     const std::size_t before = joined.size();
-    std::ranges::copy_if(collected.runs, std::back_inserter(joined), [&](const FrameRun& run) {
-      return run.place.experiment == experiment;
-    });
+    std::ranges::copy_if(collected.runs, std::back_inserter(joined),
+                         [&](const FrameRun& run) { return run.place.experiment == experiment; });
     if (joined.size() > before) continue;
     collected.notes.push_back("left out: experiment without runs: " + experiment);
   }

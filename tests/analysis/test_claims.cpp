@@ -437,5 +437,62 @@ TEST(PlannedLooks, RunsOfOtherSeedsAreAnUnplannedLook) {
   EXPECT_TRUE(has(verdict.note, "an unplanned look, using 4 seeds more than planned, gives: 0.04"));
 }
 
+TEST(PlannedLooks, TheLastOneIsFinalEvenIfItDecidesNothing) {
+  const Verdict verdict = at_looks(planned({1, 2, 3, 4, 5, 6}, 0.601, {3}));
+  EXPECT_EQ(verdict.ruling, Ruling::undecided);
+  EXPECT_EQ(verdict.runs, 3U);
+  EXPECT_FALSE(verdict.runs_needed);
+  EXPECT_TRUE(has(verdict.note, "the last planned look has not decided the claim"));
+  EXPECT_TRUE(has(verdict.note, "an unplanned look, using 3 seeds more than planned, gives: "));
+}
+
+TEST(PlannedLooks, UseSeedsThatBothSidesHave) {
+  Frame frame(with_seeds({1, 2, 3, 4, 5, 6}, 0.6));
+  for (const std::uint64_t seed : {1, 2, 3, 4}) {
+    frame.runs.push_back(made_up_run("fluid", "cell", seed, 1, [&](int, Measures& m) {
+      m.numbers["phi"] = 0.6 + 1e-5 * static_cast<double>(seed % 3);
+    }));
+  }
+  frame.seeds = {1, 2, 3, 4, 5, 6};
+  frame.looks = {3, 6};
+  const ClaimSpec claim{.id = "own",
+                        .compare = "phi",
+                        .cycles = {{1, 1}},
+                        .between = {{{{"fluid", "still"}}, {{"fluid", "cell"}}}},
+                        .margin = 0.001};
+  const Verdict verdict = claim_figure(claim).make(frame).verdicts.at(0);
+  EXPECT_EQ(verdict.looks, (std::vector<std::size_t>{3}));
+  EXPECT_EQ(verdict.look, 3U);
+  EXPECT_EQ(verdict.ruling, Ruling::agrees);
+}
+
+TEST(OwnClaims, OfEveryEstimatorAreUndecidedWithoutRuns) {
+  for (const Estimator& one : all_estimators()) {
+    ClaimSpec claim{.id = "own",
+                    .compare = one.of_run.value_or(false) ? "onset_size_phi" : "phi",
+                    .estimator = std::string(one.name),
+                    .cycles = {{9, 9}},
+                    .phi = {{0.64, 0.65}},
+                    .reaches = 1,
+                    .against = "interior_grains",
+                    .where = {{"walls", "rough"}},
+                    .margin = 0.001};
+    if (!one.one_side) claim.between = {{{{"fluid", "still"}}, {{"fluid", "cell"}}}};
+    const Verdict verdict = claim_figure(claim).make(Frame()).verdicts.at(0);
+    EXPECT_EQ(verdict.ruling, Ruling::undecided) << one.name;
+    EXPECT_TRUE(has(verdict.note, "walls=rough has a checkpoint")) << one.name << verdict.note;
+  }
+}
+
+TEST(RunsWith, CountARunOfTwoExperimentsOnce) {
+  std::vector<FrameRun> runs = with_seeds({1, 2}, 0.6);
+  runs.push_back(runs.front());
+  for (std::size_t k = 0; k < 3; ++k) {
+    runs[k].place.experiment = runs[k].place.swept["experiment"] = k < 2 ? "first" : "second";
+  }
+  EXPECT_EQ(runs_with(nlohmann::json::object(), runs).size(), 2U);
+  EXPECT_EQ(runs_with({{"experiment", "second"}}, runs), (std::vector{&std::as_const(runs[2])}));
+}
+
 }  // namespace
 }  // namespace shearcell::test
