@@ -348,10 +348,13 @@ def predicted_onsets(rows):
 
 
 def check_predictions(results, faults):
-    """The points of figure S5b that system_size.yaml states."""
+    """The points and the claims S5b.predicted_N that system_size.yaml states."""
     text = (results.parent / "system_size.yaml").read_text()
     stated = {float(size): float(phi) for size, phi in re.findall(r"\[(\d+), (0\.\d+), 0\.\d+\]", text)}
     found = dict(predicted_onsets(list(csv.DictReader((results / "nucleation/nucleation.verdict.csv").open()))))
+    claimed = dict(re.findall(r"predicted_(\d+)\n(?:.*\n){5}.*value: (0\.\d+)", text))
+    if {float(size): float(phi) for size, phi in claimed.items()} != stated:
+        faults.append(f"system_size.yaml: predicted onsets {stated}, claims {claimed}")
     if stated.keys() != found.keys() or any(abs(stated[size] - found[size]) > 1e-5 for size in found):
         faults.append(f"system_size.yaml: predicted onsets {stated}, computed {found}")
 
