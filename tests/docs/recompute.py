@@ -352,7 +352,7 @@ def check_predictions(results, faults):
     text = (results.parent / "system_size.yaml").read_text()
     stated = {float(size): float(phi) for size, phi in re.findall(r"\[(\d+), (0\.\d+), 0\.\d+\]", text)}
     found = dict(predicted_onsets(list(csv.DictReader((results / "nucleation/nucleation.verdict.csv").open()))))
-    claimed = dict(re.findall(r"predicted_(\d+)\n(?:.*\n){5}.*value: (0\.\d+)", text))
+    claimed = dict(re.findall(r"predicted_(\d+)\n(?:.*\n){4}.*value: (0\.\d+)", text))
     if {float(size): float(phi) for size, phi in claimed.items()} != stated:
         faults.append(f"system_size.yaml: predicted onsets {stated}, claims {claimed}")
     if stated.keys() != found.keys() or any(abs(stated[size] - found[size]) > 1e-5 for size in found):
