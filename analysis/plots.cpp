@@ -413,16 +413,13 @@ void set_curves(const Looks& looks, const NameVariants& names, Panel& panel) {
 
 // --- Average ---
 
-/// Mean over packings of values that may be censored. `runs` counts only the uncensored packings.
+/// Mean over packings of values that may be censored. `runs` counts all packings in the mean.
 RunStatistics mean_with_censored(RunGroup runs, std::span<const CensoredValue> values) {
   const std::vector<CensoredValue> means = over_packings(runs, values);
-  RunStatistics found;
-  found.runs = static_cast<std::size_t>(std::ranges::count(means, false, &CensoredValue::censored));
   const std::optional<Estimate> estimate = censored_mean(means);
-  if (!estimate || !std::isfinite(estimate->value)) return found;
-  found.mean = estimate->value;
-  found.standard_error = estimate->spread / std::sqrt(static_cast<double>(means.size()));
-  return found;
+  if (!estimate || !std::isfinite(estimate->value)) return {};
+  const auto n = static_cast<double>(means.size());
+  return {means.size(), estimate->value, estimate->spread / std::sqrt(n)};
 }
 
 /// Means over the runs of a curve at one cycle, in one bin of phi or at one x.
