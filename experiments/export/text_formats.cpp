@@ -78,7 +78,7 @@ std::string lammps_title(const ExportedState& f) {
 
 FrameWriter extxyz_writer(const std::filesystem::path& file, LengthUnit unit) {
   return [unit, out = std::make_shared<NewFile>(file)](const ExportedState& f) {
-    const double length = unit == LengthUnit::m ? 1 : 2 * f.radius;
+    const double length = metres(unit, 2 * f.radius);
     std::string text = fmt::format("{}\n{}\n", f.particles(), xyz_comment(f, unit, length));
     for (std::size_t i = 0; i < f.particles(); ++i) {
       const Eigen::Vector3d r = f.position.col(static_cast<Eigen::Index>(i)) / length;

@@ -209,6 +209,7 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
         const PlacedGrains grains =
             placed(*plan.file, run.packing, seed);  // throws if the grains do not fit
         plan.read = fmt::format("{}: {}", plan.file->path, grains.read);
+        if (!grains.warning.empty()) plan.warnings.push_back(grains.warning);
         const Cell& cell = grains.cell;
         const double height = std::fabs(grains.state.wall_height -
                                         (cell.moving == MovingWall::top ? cell.bottom : cell.top));

@@ -28,6 +28,9 @@ namespace {
 using std::string;
 using std::string_view;
 
+constexpr LengthUnit kUnits[] = {LengthUnit::m, LengthUnit::d, LengthUnit::mm, LengthUnit::cm,
+                                 LengthUnit::um};
+
 /// What a column can contain. In a kWall column, 0 (in a LAMMPS data file: type 1) marks a grain,
 /// and a larger value marks a wall grain.
 enum Quantity { kX, kY, kZ, kVx, kVy, kVz, kDiameter, kId, kWall, kQuantities };
@@ -123,14 +126,23 @@ std::vector<string_view> split(string_view text, char separator) {
   }
 }
 
+/// The unit with this name in lower case, or nothing. The micro sign is not the Greek letter.
+std::optional<LengthUnit> unit_of(string_view name) {
+  if (name == "\u00b5m" || name == "\u03bcm") return LengthUnit::um;
+  if (name == "si") return LengthUnit::m;
+  return name == "cgs" ? LengthUnit::cm : value_of<LengthUnit>(name);
+}
+
 /// `units`: whether listed names may end in a unit, as in x_m. A name that is not listed can still
 /// be recognized as a diameter, which is only checked, or as a velocity, which is refused: earlier
-/// versions ignored such velocities, so reading them now would change packings with known ids.
+/// versions ignored such velocities, so reading them now would change packings with known ids. For
+/// the same reason, columns such as x_mm or "x [m]" are only read if there is no x, x_m or x_d.
 Meaning meaning_of(string_view column, bool units) {
   // A prefix that LAMMPS uses, the stem of the name, and a unit or an index.
   static const std::regex parts(
       "([cf]_|d2?_(?=...)|v_(?!(?:[xyzmd]|.m)(?:\\W|_|$)))?(.+?)"
-      "(_([md])(_per_s)?|[ _]*[\\[({/:.].*|[ _](m|d|si|lj|.?.m)([ _]?(per|p)?[ _]?s)?)?");
+      "((?:[ _]|[ _]*[\\[(])(d|[mcu]?m|\u00b5m|\u03bcm)(_per_s|/s)?[\\])]?|"
+      "[ _]*[\\[({/:.].*|[ _](m|d|si|lj|.?.m)([ _]?(per|p)?[ _]?s)?)?");
   static const std::regex size(
       "r|rads?|d|dias?|sizes?|sigma|(?!max|min|cut).*(radius|radii|diam(?!o)).*");
   static const std::regex velocity(
@@ -140,13 +152,16 @@ Meaning meaning_of(string_view column, bool units) {
   std::smatch found;
   if (name.size() > 64 || !std::regex_match(name, found, parts)) return {};  // limits recursion
   string stem = found[2];
-  const auto unit = value_of<LengthUnit>(found.str(4));
+  const auto unit = unit_of(found.str(4));
   const bool may_be_listed = found.length(1) == 0 && (found.length(3) == 0 || (units && unit));
   for (Meaning meaning : kMeanings) {
     const std::vector<string_view> names = split(meaning.names, ' ');
     const auto at = std::ranges::find(names, stem) - names.begin();
     if (!may_be_listed || at == std::ssize(names)) continue;
     meaning.unit = unit;
+    if (unit && (!found.str(3).starts_with('_') || found.length(4) > 1)) {
+      meaning.rank = Meaning::second_best;
+    }
     if (meaning.count == 1) meaning.first += static_cast<int>(at);
     return meaning;
   }
@@ -559,7 +574,9 @@ class PackingReader {
     next_line();
     const string_view header = header_of(line_);
     grains_ = {.header = line_,
-               .remedy = "The first line must name the columns, such as x_m,y_m,z_m.",
+               .remedy =
+                   "The first line must name the columns, such as x_m,y_m,z_m. The unit can "
+                   "be m, d, mm, cm or um.",
                .columns = columns_of(header, separator_of(header)),
                .separator = separator_of(header)};
     units_in_names_ = true;
@@ -568,20 +585,24 @@ class PackingReader {
 
   /// Sets the unit of lengths from the value of a key. The value "lj" sets no unit.
   void take_unit(const char* key, string_view text) {
-    const string unit = lower(text);
-    if (unit == "lj") return;
-    if (unit != "m" && unit != "si" && unit != "d") {
+    const string name = lower(text);
+    if (name == "lj") return;
+    const std::optional<LengthUnit> unit = unit_of(name);
+    if (!unit) {
       refuse_part(text, key, "cannot be read",
-                  key == string_view("units")
-                      ? "Lengths must be in m (units si) or in the unit of the manifest (units lj)."
-                      : "Write m or d.");
+                  fmt::format("Lengths must be in one of {}, si, cgs, or lj (the unit that the "
+                              "manifest states).",
+                              fmt::join(kNames<LengthUnit>, ", ")));
     }
-    set_unit(unit == "d" ? LengthUnit::d : LengthUnit::m, text);
+    set_unit(*unit, text);
   }
+
+  /// The unit that the file gives, else that of the manifest.
+  std::optional<LengthUnit> stated_unit() const { return unit_ ? unit_ : facts_.unit; }
 
   /// Sets the unit of lengths. `in`: text from the line that gives the unit.
   void set_unit(LengthUnit unit, string_view in) {
-    const std::optional<LengthUnit> other = unit_ ? unit_ : facts_.unit;
+    const std::optional<LengthUnit> other = stated_unit();
     if (other && *other != unit) {
       refuse_line(
           in, fmt::format("gives lengths in {}", name_of(unit)),
@@ -635,6 +656,7 @@ class PackingReader {
         used[k] = true;
         use(meaning, column, at, uses);
         if (meaning.first > kDiameter) continue;  // not a length
+        if (!meaning.unit) meaning.unit = stated_unit();
         if (unit && meaning.unit != *unit) {
           refuse_part(column.name, "", "is in another unit than the earlier columns",
                       "Write all lengths in m (x_m) or all in d (x_d).");
@@ -758,24 +780,27 @@ class PackingReader {
 
   /// The factor that converts lengths of the file to grain diameters.
   double scale() {
-    const std::optional<LengthUnit> unit = unit_ ? unit_ : facts_.unit;
-    if (!unit) {
+    unit_ = stated_unit();
+    if (!unit_) {
       refuse_file("does not give the unit of its lengths",
                   "Write `unit: m` or `unit: d` (grain diameters) beside `file` in the manifest.");
     }
-    unit_ = unit;
-    const bool in_m = unit == LengthUnit::m;
-    const double expected = in_m ? facts_.diameter_m : 1, in_other = in_m ? 1 : facts_.diameter_m;
+    const double diameter = facts_.diameter_m, expected = diameter / metres(*unit_, diameter);
     const double given = rows_.front().value[kDiameter];
-    const bool fits = std::fabs(given - expected) <= kTolerance * expected;
-    if (fits || !holds(uses_, kDiameter)) return 1 / expected;
+    const auto fits = [&](LengthUnit unit) {
+      return std::fabs(given * metres(unit, diameter) - diameter) <= kTolerance * diameter;
+    };
+    if (fits(*unit_) || !holds(uses_, kDiameter)) return 1 / expected;
+    const auto* other = std::ranges::find_if(kUnits, fits);
     const string remedy =
-        std::fabs(given - in_other) <= kTolerance * in_other
-            ? fmt::format("The number would fit the unit {}. Is the unit right?", in_m ? "d" : "m")
-        : in_m ? fmt::format("The manifest has {:.6g} m. Set `diameter_m`, or scale the file.",
-                             expected)
-               : "Lengths in d are divided by the diameter, so the diameter must be 1.";
-    refuse_line(rows_.front().line, fmt::format("the diameter is {:.6g} {}", given, name_of(*unit)),
+        other != std::end(kUnits)
+            ? fmt::format("The number would fit the unit {}. Is the unit right?", name_of(*other))
+        : unit_ == LengthUnit::d
+            ? "Lengths in d are divided by the diameter, so the diameter must be 1."
+            : fmt::format("The manifest has {:.6g} {}. Set `diameter_m`, or scale the file.",
+                          expected, name_of(*unit_));
+    refuse_line(rows_.front().line,
+                fmt::format("the diameter is {:.6g} {}", given, name_of(*unit_)),
                 remedy + about_diameter_);
   }
 
@@ -806,6 +831,11 @@ class PackingReader {
     require_columns();
     rows_ = rows_of(grains_, uses_);
     if (rows_.empty()) refuse_line(line_, "the file has no grains", kFormats);
+    if (facts_.grains > 0 && rows_.size() != facts_.grains) {
+      refuse_file(fmt::format("has {}, but the manifest asks for {}",
+                              counted(rows_.size(), "grain"), facts_.grains),
+                  fmt::format("Write `grains: {}`.", rows_.size()));
+    }
     if (!moving_.rows.empty()) join_velocities();
     for (const string& name : aside) leave(name);
     if (wall_grains_ > 0) leave(counted(wall_grains_, "wall grain"));
@@ -836,7 +866,7 @@ class PackingReader {
           fmt::format("At most {:g} d are allowed. Is the unit of lengths right?", kLongestCell));
     }
     if (box_) require_inside(space, packing.position);
-    check_overlaps(space, packing.position);
+    packing.largest_overlap = check_overlaps(space, packing.position);
     return packing;
   }
 
@@ -868,34 +898,45 @@ class PackingReader {
     }
   }
 
-  /// Rejects the file at the first pair that overlaps too much, because a search for all such pairs
-  /// could be slow.
-  void check_overlaps(const Eigen::AlignedBox3d& space, const Eigen::Matrix3Xd& position) const {
+  /// Returns PackingFile::largest_overlap. Rejects the file at the first pair that overlaps too
+  /// much, because a search for all such pairs could be slow.
+  double check_overlaps(const Eigen::AlignedBox3d& space, const Eigen::Matrix3Xd& position) const {
     const Eigen::Vector3d size = space.sizes();
     Cell cell;
     cell.width = size.x();
     cell.top = size.y();
-    cell.depth = box_ ? size.z() : size.z() + kShallowestCell;  // without a box: no images touch
+    const bool fits = facts_.depth >= std::max(kShallowestCell, (1 - kTolerance) * (size.z() - 2));
+    // No images touch at the last of these depths.
+    cell.depth = box_ ? size.z() : fits ? facts_.depth : size.z() + kShallowestCell;
     const Eigen::Matrix3Xd sites = position.colwise() - space.min();
-    for_each_pair(cell, wall_pose(cell, 0, 0), sites, 1 - facts_.largest_overlap,
-                  [&](std::int32_t i, std::int32_t j, const Eigen::Vector3d& r) {
-                    const double overlap = 1 - r.norm();
-                    if (overlap <= facts_.largest_overlap) return;
-                    const GrainRow* first = &rows_[static_cast<std::size_t>(i)];
-                    const GrainRow* second = &rows_[static_cast<std::size_t>(j)];
-                    if (first->line.data() > second->line.data()) std::swap(first, second);
-                    refuse_line(
-                        second->line,
-                        overlap == 1
-                            ? fmt::format("the grain has the same position as the grain in line {}",
-                                          line_of(*first))
-                            : fmt::format("the grain overlaps the grain in line {} by {:.3g} d",
-                                          line_of(*first), overlap),
-                        fmt::format("At most {:g} d are allowed (`max_overlap_diameters`). Are the "
-                                    "unit of the lengths and the diameter right? If so, let the "
-                                    "grains relax in the program that made the file.",
-                                    facts_.largest_overlap));
-                  });
+    double largest = 0;
+    for_each_pair(
+        cell, wall_pose(cell, 0, 0), sites, 1,
+        [&](std::int32_t i, std::int32_t j, const Eigen::Vector3d& r) {
+          const double overlap = 1 - r.norm();
+          const Eigen::Vector3d inside = sites.col(i) - sites.col(j);
+          const bool image = !box_ && std::fabs(inside.z()) > 0.5 * cell.depth;
+          if (!image) largest = std::max(largest, overlap);
+          if (overlap <= facts_.largest_overlap) return;
+          const GrainRow* first = &rows_[static_cast<std::size_t>(i)];
+          const GrainRow* second = &rows_[static_cast<std::size_t>(j)];
+          if (first->line.data() > second->line.data()) std::swap(first, second);
+          const string other = fmt::format("{}the grain in line {}",
+                                           image ? "a periodic image of " : "", line_of(*first));
+          refuse_line(
+              second->line,
+              overlap == 1 ? fmt::format("the grain has the same position as {}", other)
+                           : fmt::format("the grain overlaps {} by {:.3g} d", other, overlap),
+              image ? fmt::format("The cell of the manifest is only {:.6g} d deep (z). ",
+                                  cell.depth) +
+                          facts_.remedy_for_width(std::fabs(inside.z()) +
+                                                  std::sqrt(1 - inside.head<2>().squaredNorm()))
+                    : fmt::format("At most {:g} d are allowed (`max_overlap_diameters`). Are the "
+                                  "unit of the lengths and the diameter right? If so, let the "
+                                  "grains relax in the program that made the file.",
+                                  facts_.largest_overlap));
+        });
+    return largest;
   }
 
   static constexpr double kLargest = 1e100;   // products of two values are finite
@@ -920,6 +961,21 @@ class PackingReader {
 };
 
 }  // namespace
+
+double metres(LengthUnit unit, double diameter_m) {
+  static constexpr std::array<double, std::size(kUnits)> length = {1, 0, 1e-3, 1e-2, 1e-6};
+  return unit == LengthUnit::d ? diameter_m : length[static_cast<std::size_t>(unit)];
+}
+
+std::optional<LengthUnit> likelier_unit(LengthUnit unit, double diameter_m, double length,
+                                        double expected) {
+  const auto off = [&](LengthUnit other) {
+    const double factor = metres(other, diameter_m) / metres(unit, diameter_m);
+    return std::fabs(std::log(length * factor / expected));
+  };
+  const LengthUnit best = std::ranges::min(kUnits, {}, off);
+  return off(best) < 0.5 * off(unit) ? std::optional(best) : std::nullopt;
+}
 
 PackingFile read_packing(string_view text, string_view file, const PackingFacts& facts) {
   return PackingReader(text, file, facts).read();

@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -16,10 +17,18 @@
 
 namespace shearcell {
 
-/// Unit of the lengths of a file: metres or grain diameters.
-enum class LengthUnit : std::uint8_t { m, d };
+/// Unit of the lengths of a file; d is the grain diameter.
+enum class LengthUnit : std::uint8_t { m, d, mm, cm, um };
 template <>
-inline constexpr auto kNames<LengthUnit> = names_in_order<LengthUnit>("m", "d");
+inline constexpr auto kNames<LengthUnit> = names_in_order<LengthUnit>("m", "d", "mm", "cm", "um");
+
+/// Length of one unit [m]. `diameter_m`: diameter of the grains.
+double metres(LengthUnit unit, double diameter_m);
+
+/// The unit that `length` [d] probably has, if it was read in `unit` but should be about `expected`
+/// [d]; nothing if no other unit is clearly closer.
+std::optional<LengthUnit> likelier_unit(LengthUnit unit, double diameter_m, double length,
+                                        double expected);
 
 /// The grains of a file, sorted by id, or in the order of the file if it has no ids. Wall grains in
 /// an export of this program are left out.
@@ -28,6 +37,7 @@ struct PackingFile {
   std::optional<Eigen::Matrix3Xd> velocity;  ///< 3 x N [d/s]
   std::optional<Eigen::AlignedBox3d> box;    ///< [d]; in exports of this program, the wall planes
   LengthUnit unit = LengthUnit::d;           ///< of lengths in the file
+  double largest_overlap = 0;                ///< [d]; without a box, periodic images are ignored
   std::vector<std::string> not_read;         ///< unread columns, sections and keys, at most 100
 };
 
@@ -36,6 +46,10 @@ struct PackingFacts {
   std::optional<LengthUnit> unit = {};  ///< unit of lengths, if the file does not give it
   double diameter_m = 0;                ///< of the run's grains
   double largest_overlap = 0;           ///< largest allowed overlap of two grains [d], below 1
+  std::uint64_t grains = 0;             ///< of the run; 0: not known
+  double depth = 0;                     ///< of the run's cell [d]; 0: not known
+  /// Returns the remedy for a cell that should have this width and depth [d].
+  std::function<std::string(double width)> remedy_for_width = {};
 };
 
 /// Largest allowed size of a file [bytes].
@@ -43,8 +57,9 @@ inline constexpr std::size_t kLargestPackingFile = std::size_t{32} << 20;
 
 /// Detects the format of the text and reads it. `file`: the name for messages. Positions are kept,
 /// except that z is wrapped into the box. Throws ManifestError, with line, value and remedy, if the
-/// text is not a packing of equal grains inside its box, or if two grains overlap by more than
-/// facts.largest_overlap. If there is a box, overlaps across the periodic boundary are included.
+/// text is not a packing of facts.grains equal grains inside its box, or if two grains overlap by
+/// more than facts.largest_overlap. Overlaps across the periodic boundary of the box are included;
+/// without a box, those across the boundary of a cell of facts.depth.
 PackingFile read_packing(std::string_view text, std::string_view file, const PackingFacts& facts);
 
 /// For example "150 grains, box 6 x 7.2 x 6 d, no velocities; not read: element".

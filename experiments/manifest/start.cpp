@@ -55,53 +55,64 @@ void require_same_cell(const Manifest& manifest, const Scale& scale, const Varia
   }
 }
 
-/// The nominal packing fraction with which the cell has this width; nothing if the fraction is out
-/// of range. A cell with a higher fraction is narrower.
-std::optional<double> fraction_for_width(Geometry shape, double width) {
+/// States the nominal packing fraction with which the cell is `width` [d] wide and deep, if this
+/// fraction is in range. A cell with a higher fraction is narrower.
+std::string remedy_for_width(const Parameters& p, double width) {
+  Geometry shape = geometry(p);
   const Range& range = find_field("nominal_packing_fraction")->range;
   const auto excess = [&](double fraction) {
     shape.nominal_packing_fraction = fraction;
     return cell_width(shape) - width;
   };
-  if (excess(range.min) < 0 || excess(range.max) > 0) return std::nullopt;
+  if (excess(range.min) < 0 || excess(range.max) > 0) return "Use a file of another size.";
   const auto [low, high] = boost::math::tools::bisect(excess, range.min, range.max,
                                                       boost::math::tools::eps_tolerance<double>());
-  return 0.5 * (low + high);
+  return fmt::format(
+      "Write `nominal_packing_fraction: {:.10g}`. The cell then fits the file, if "
+      "height_over_width is not changed.",
+      0.5 * (low + high));
 }
 
-/// Places the grains between the wall planes of the cell. A grain may overlap a plane by `limit`
-/// [d]. Throws ManifestError.
+/// Places the grains between the wall planes of the cell. Throws ManifestError if the box or the
+/// grains do not fit the width and depth of the cell.
+///
+/// Without a box, the outermost grains may overlap the side walls as deeply as two grains of the
+/// file overlap: such a packing is under load, or shall relax while it settles. They may always
+/// overlap the walls by `usual_overlap`, because the deepest contact under load can be at a wall.
+/// Deeper overlaps mean that the cell is narrower than the packing.
 State state_in(const Cell& cell, const PackingFile& grains, const std::string& path,
-               const Parameters& p, double limit) {
+               const Parameters& p) {
   constexpr double tolerance = 1e-6;  // relative to the width
+  constexpr double usual_overlap = 0.05;
   const Eigen::AlignedBox3d box =
       grains.box.value_or(Eigen::AlignedBox3d(grains.position.rowwise().minCoeff().array() - 0.5,
                                               grains.position.rowwise().maxCoeff().array() + 0.5));
   const Eigen::Vector3d low = box.min(), high = box.max(), size = box.sizes();
   for (const int axis : {0, 2}) {
     const double room = axis == 0 ? cell.width : cell.depth;
-    // Without a box, grains may overlap the planes, and may cross the periodic boundary in z.
-    const double over = size[axis] - room - (grains.box ? 0 : axis == 0 ? 2 * limit : 1);
+    // Without a box, grains may cross the periodic boundary in z.
+    const double beyond = grains.box  ? 0
+                          : axis == 2 ? 1
+                                      : 2 * std::max(usual_overlap, grains.largest_overlap);
+    const double over = size[axis] - room - beyond;
     const bool fits = grains.box ? std::fabs(over) <= tolerance * room : over <= tolerance * room;
     if (fits) continue;
-    const auto fraction = fraction_for_width(geometry(p), size[axis]);
-    const bool in_m = grains.unit == LengthUnit::m;
     const double outer = grains.box ? 0 : 1;  // the radii of the outermost grains [d]
-    const double in_other = outer + (size[axis] - outer) * (in_m ? p.diameter_m : 1 / p.diameter_m);
-    const bool fits_better =
-        std::fabs(std::log(in_other / room)) < 0.5 * std::fabs(std::log(size[axis] / room));
+    const double extent = size[axis] - outer;
+    const auto unit = likelier_unit(grains.unit, p.diameter_m, extent, room - outer);
     refuse(path, {}, "",
            fmt::format("the {} are {:.9g} d {}, but the cell of the manifest is {:.9g} d",
                        grains.box ? "box and grains" : "grains", size[axis],
                        axis == 0 ? "wide (x)" : "deep (z)", room),
            "",
-           fits_better ? fmt::format("Is the unit of the lengths right? With lengths in {}, the "
-                                     "size would be {:.4g} d.",
-                                     in_m ? "d" : "m", in_other)
-           : fraction  ? fmt::format("Write `nominal_packing_fraction: {:.10g}`. The cell "
-                                      "then fits the file, if height_over_width is not changed.",
-                                     *fraction)
-                       : "Use a file with a box of another size.");
+           unit ? fmt::format("Is the unit of the lengths right? With lengths in {0}, the size "
+                              "would be {1:.4g} d. If {0} is the unit, write it in the file "
+                              "(columns x_{0}, y_{0}, z_{0}; or length_unit={0}) or in the "
+                              "manifest (`unit: {0}`).",
+                              name_of(*unit),
+                              outer + extent * metres(*unit, p.diameter_m) /
+                                          metres(grains.unit, p.diameter_m))
+                : remedy_for_width(p, size[axis]));
   }
   const bool from_below = cell.moving == MovingWall::top;  // the bottom plane is fixed
   const Eigen::Vector3d shift = {grains.box ? -low.x() : 0.5 * (cell.width - low.x() - high.x()),
@@ -197,19 +208,28 @@ PackingText read_packing_file(const Manifest& manifest, const Scale& scale) {
 
 PlacedGrains placed(const PackingText& packing, const Parameters& p, std::uint64_t seed,
                     const Poll& poll) {
+  // The first check of a run or of its settling must not fail: a run without settling allows
+  // max_overlap_diameters, and settling allows more while it presses the grains together.
   double limit = p.max_overlap_diameters;
   if (packing.file.settles) limit = std::max(limit, 0.9 * kLargestOverlapLimit);
-  const PackingFile grains = read_packing(
-      packing.text, packing.path,
-      {.unit = packing.file.unit, .diameter_m = p.diameter_m, .largest_overlap = limit});
-  const auto count = static_cast<std::uint64_t>(grains.position.cols());
-  if (count != p.grains) {
-    refuse(packing.path, {}, "",
-           fmt::format("has {}, but the manifest asks for {}", counted(count, "grain"), p.grains),
-           "", fmt::format("Write `grains: {}`.", count));
-  }
+  const PackingFile grains =
+      read_packing(packing.text, packing.path,
+                   {.unit = packing.file.unit,
+                    .diameter_m = p.diameter_m,
+                    .largest_overlap = limit,
+                    .grains = p.grains,
+                    .depth = cell_width(geometry(p)),
+                    .remedy_for_width = [&](double width) { return remedy_for_width(p, width); }});
   PlacedGrains made{make_cell(geometry(p), seed, poll), {}, describe(grains)};
-  made.state = state_in(made.cell, grains, packing.path, p, limit);
+  made.state = state_in(made.cell, grains, packing.path, p);
+  const Eigen::RowVectorXd x = made.state.position.row(0);
+  const double width = x.maxCoeff() - x.minCoeff() + 1;
+  if (!grains.box && width <= made.cell.width - 1 && width >= kShallowestCell) {
+    made.warning = fmt::format(
+        "{}: the grains are {:.6g} d wide (x), but the cell of the manifest is {:.6g} d. The cell "
+        "has room for more grains. {}",
+        packing.path, width, made.cell.width, remedy_for_width(p, width));
+  }
   double deepest = 0;
   const WallPose pose = wall_pose(made.cell, 0, made.state.wall_height);
   for_each_contact(made.cell, made.state.position, pose, [&](const Contact& contact) {

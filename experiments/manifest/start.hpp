@@ -36,14 +36,16 @@ PackingText read_packing_file(const Manifest& manifest, const Scale& scale);
 
 struct PlacedGrains {
   Cell cell;
-  State state;       ///< at step 0; the moving wall is at rest
-  std::string read;  ///< what was read; see describe()
+  State state;               ///< at step 0; the moving wall is at rest
+  std::string read;          ///< what was read; see describe()
+  std::string warning = {};  ///< if the cell is much wider than the grains
 };
 
 /// Places the grains of the file in the cell that `parameters` define. `seed` decides the positions
 /// of the wall grains. The box of the file must be as wide and deep as the cell. Without a box, the
-/// grains must fit into the cell, and the bottom and top walls touch the outermost grains. Throws
-/// ManifestError with the reason and the remedy.
+/// grains must fit into the cell, and the bottom and top walls touch the outermost grains. No
+/// overlap is larger than the run or its settling allows. Throws ManifestError with the reason and
+/// the remedy.
 PlacedGrains placed(const PackingText& packing, const Parameters& parameters, std::uint64_t seed,
                     const Poll& poll = {});
 

@@ -76,7 +76,9 @@ const std::vector<BadPacking> kBad = {
     {"UnitContradicted", "a.csv", "x_m,y_m,z_m\n1,1,1\n",
      "a.csv:1:1: gives lengths in m. The manifest sets `unit: d`. Remove that key."},
     {"UnitUnknown", "a.xyz", xyz("length_unit=nm", "A 1 1 1\nA 3 3 3\n"),
-     "a.xyz:2:13: length_unit: cannot be read (got nm). Write m or d."},
+     "a.xyz:2:13: length_unit: cannot be read (got nm). Lengths must be in one of m, d, mm, cm, "
+     "um, "
+     "si, cgs, or lj (the unit that the manifest states)."},
     {"UnitsMixed", "a.csv", "x_m,y_m,z_d\n1,1,1\n",
      "a.csv:1:9: is in another unit than the earlier columns (got z_d). Write all lengths in m "
      "(x_m) or all in d (x_d).",
@@ -101,16 +103,16 @@ const std::vector<BadPacking> kBad = {
      "a.csv:3:1: has 2 fields instead of 3. Each grain is one line with a value for each column."},
     {"ColumnMissing", "a.csv", "x,y,radius\n1,2,0.5\n",
      "a.csv:1:1: the column z is missing. The first line must name the columns, such as "
-     "x_m,y_m,z_m."},
+     "x_m,y_m,z_m. The unit can be m, d, mm, cm or um."},
     {"VelocityIncomplete", "a.csv", "x,y,z,vx\n1,2,3,0\n",
      "a.csv:1:1: the column vy is missing. The first line must name the columns, such as "
-     "x_m,y_m,z_m."},
+     "x_m,y_m,z_m. The unit can be m, d, mm, cm or um."},
     {"ColumnTwice", "a.csv", "x,y,z,x\n1,2,3,4\n",
      "a.csv:1:7: is a column that occurs twice (got x). Keep one of them."},
     {"HeaderAlone", "a.csv", "x,y,z\n", "a.csv:1:1: the file has no grains. " + kFormats},
     {"HeaderMissing", "a.csv", "1,2,3\n",
      "a.csv:1:1: the column x is missing. The first line must name the columns, such as "
-     "x_m,y_m,z_m."},
+     "x_m,y_m,z_m. The unit can be m, d, mm, cm or um."},
     {"TooFew", "a.xyz", xyz("", "A 1 1 1\nA 3 3 3\n", 3),
      "a.xyz:4:1: the file ends after 2 of the 3 grains announced in line 1. Use a complete file, "
      "or "
@@ -255,11 +257,36 @@ TEST(PackingFile, FormatAndUnitMayBeWrittenInManyWays) {
   expect_two("a.dump", dump("id type xu yu zu", "2 1 3 3 3\n1 1 1 1 10\n"), kInD);  // z is wrapped
 }
 
+TEST(PackingFile, LengthsMayBeInMillimetresCentimetresOrMicrometres) {
+  for (const char* names : {"x_mm,y_mm,z_mm", "x [mm],y(mm),z (mm)", "X mm,Y mm,Z mm"}) {
+    expect_two("a.csv", fmt::format("{},diameter_mm\n3,3,3,3\n9,9,9,3\n", names), kUnstated);
+  }
+  expect_two("a.csv", "x_cm,y_cm,z_cm\n.3,.3,.3\n.9,.9,.9\n", kUnstated);
+  for (const char* unit : {"um", "\u00b5m", "\u03bcm"}) {
+    expect_two("a.csv", fmt::format("x_{0},y_{0},z_{0}\n3000,3000,3000\n9000,9000,9000\n", unit),
+               kUnstated);
+  }
+  expect_two("a.csv", "x [m],y [m],z [m]\n3e-3,3e-3,3e-3\n9e-3,9e-3,9e-3\n", kUnstated);
+  expect_two("a.xyz", xyz("length_unit=mm", "A 3 3 3\nA 9 9 9"), kUnstated);
+  const std::string atoms = "Atoms # atomic\n\n1 1 .3 .3 .3\n2 1 .9 .9 .9\n";
+  expect_two("a.data", "spheres, units = cgs" + data("", atoms).substr(10), kUnstated);
+  expect_two("a.dump", "ITEM: UNITS\ncgs\n" + dump("id x y z", "1 .3 .3 .3\n2 .9 .9 .9\n"),
+             kUnstated);
+  PackingFacts in_mm = kUnstated;
+  in_mm.unit = LengthUnit::mm;
+  expect_two("a.csv", "x,y,z,vx [mm/s],vy [mm/s],vz [mm/s]\n3,3,3,0,0,0\n9,9,9,0,0,0\n", in_mm);
+  const PackingFile moving = read_packing(
+      "x_mm,y_mm,z_mm,vx_mm_per_s,vy_mm_per_s,vz_mm_per_s\n3,3,3,6,3,0\n", "a.csv", kUnstated);
+  ASSERT_TRUE(moving.velocity);
+  EXPECT_LT((moving.velocity->col(0) - Eigen::Vector3d(2, 1, 0)).norm(), 1e-12);
+}
+
 const std::string kKeys =
     "Use one of the keys Lattice, Origin, Properties, length_unit, velocity_unit, without blanks "
     "around `=`, or remove this key.";
 const std::string kLammpsUnits =
-    " Lengths must be in m (units si) or in the unit of the manifest (units lj).";
+    " Lengths must be in one of m, d, mm, cm, um, si, cgs, or lj (the unit that the manifest "
+    "states).";
 const std::string kVelocities =
     "Name the columns x, y, z, vx, vy, vz (in extended XYZ pos:R:3 and vel:R:3), or remove this "
     "column. Velocities must be in units of length per second.";
@@ -316,7 +343,7 @@ const std::vector<Parts> kParts = {
     {"a.xyz", xyz("length_unit = 'd' Lattice='9 0 0 0 9 0 0 0 9'", "A 1 1 1\nA 3 3 3\n"),
      kStill + "; not read: species"},
     {"a.xyz", xyz("velocity_unit=mm/s", "A 1 1 1\nA 3 3 3\n"),
-     ":2:15: velocity_unit: cannot be read (got mm). Write m or d."},
+     ":2:1: gives lengths in mm. The manifest sets `unit: d`. Remove that key."},
     {"a.xyz", xyz("energy= Lattice=\"9 0 0 1 9 0 0 0 9\"", "A 1 1 1\nA 3 3 3\n"),
      ":2:1: the box is not orthogonal: an edge leans by 1. " + kUpright},
     {"a.xyz", xyz(kLattice + "pbc=\"T T T\" energy=-1.0 note=\"a = b\"", "A 1 1 1\nA 3 3 3\n"),
@@ -363,7 +390,7 @@ const std::vector<Parts> kParts = {
     {"a.data", data("2 0 0 xy xz yz\n" + kBounds, kAtoms),
      ":8:1: the box is not orthogonal: an edge leans by 2. " + kUpright},
     {"a.data", titled("LAMMPS data file via write_data, version 4 Feb 2025, units = cgs"),
-     ":1:62: units: cannot be read (got cgs)." + kLammpsUnits},
+     ":1:1: gives lengths in cm. The manifest sets `unit: d`. Remove that key."},
     {"a.data", titled("soft spheres (units real)"),
      ":1:21: units: cannot be read (got real)." + kLammpsUnits},
     {"a.data", titled("LAMMPS data file via write_data, timestep = 0, units = lj"),
@@ -383,7 +410,8 @@ const std::vector<Parts> kParts = {
           "0\n2 0 1 0 0 0 0\n"),
      kBoxed + "velocities; not read: type, density, angular velocities"},
     // LAMMPS dumps.
-    {"a.dump", in_units("cgs"), ":2:1: units: cannot be read (got cgs)." + kLammpsUnits},
+    {"a.dump", in_units("cgs"),
+     ":2:1: gives lengths in cm. The manifest sets `unit: d`. Remove that key."},
     {"a.dump", in_units("nano"), ":2:1: units: cannot be read (got nano)." + kLammpsUnits},
     {"a.dump", in_units("si"),
      ":2:1: gives lengths in m. The manifest sets `unit: d`. Remove that key."},
@@ -415,9 +443,16 @@ const std::vector<Parts> kParts = {
      kStill + "; not read: boundary pp pp pp"},
     // CSV.
     {"a.csv", csv("vx_mm_per_s", "1"),
-     ":1:7: cannot be read under this name (got vx_mm_per_s). " + kVelocities},
+     ":1:7: is in another unit than the earlier columns (got vx_mm_per_s). " + kOneUnit},
     {"a.csv", csv("Vx (mm/s)", "1"),
-     ":1:7: cannot be read under this name (got Vx (mm/s)). " + kVelocities},
+     ":1:7: is in another unit than the earlier columns (got Vx (mm/s)). " + kOneUnit},
+    {"a.csv", csv("vx_km_per_s", "1"),
+     ":1:7: cannot be read under this name (got vx_km_per_s). " + kVelocities},
+    {"a.csv", csv("x_mm", "7"), kTwo + "; not read: x_mm"},
+    {"a.csv", csv("Diameter [d]", "1"), kTwo},
+    {"a.csv", "x_nm,y_nm,z_nm\n1,1,1\n3,3,3\n",
+     ":1:1: the column x is missing. The first line must name the columns, such as x_m,y_m,z_m. "
+     "The unit can be m, d, mm, cm or um."},
     {"a.csv", csv("velocity:0", "1"),
      ":1:7: cannot be read under this name (got velocity:0). " + kVelocities},
     {"a.csv", csv("momentum_x", "1"),
@@ -429,9 +464,10 @@ const std::vector<Parts> kParts = {
     {"a.csv", csv("Particle Radius", "0.5"), kTwo},
     {"a.csv", csv("sigma", "1"), kTwo},
     {"a.csv", csv("diameter_mm", "3"),
-     ":2:1: the diameter is 3 d. Lengths in d are divided by the diameter, so the diameter must be "
-     "1. The column "
-     "diameter_mm is read as diameters. If this is wrong, rename or remove the column."},
+     ":1:7: is in another unit than the earlier columns (got diameter_mm). " + kOneUnit},
+    {"a.csv", csv("diam", "3"),
+     ":2:1: the diameter is 3 d. The number would fit the unit mm. Is the unit right? The column "
+     "diam is read as diameters. If this is wrong, rename or remove the column."},
     {"a.csv", csv("grain diam", "1.1"),
      ":2:1: the diameter is 1.1 d. Lengths in d are divided by the diameter, so the diameter must "
      "be 1. The "

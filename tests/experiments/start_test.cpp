@@ -516,6 +516,92 @@ TEST_F(FromAFile, AWrongUnitIsAskedAbout) {
       std::string::npos)
       << wide;
   EXPECT_EQ(wide.find("nominal_packing_fraction"), std::string::npos) << wide;
+  write_grains("x_m,y_m,z_m\n3,3,3\n9,3,3\n");
+  const std::string in_mm = refusal_of(manifest("", two));
+  EXPECT_NE(in_mm.find("the grains are 2001 d wide (x)"), std::string::npos) << in_mm;
+  EXPECT_NE(in_mm.find("With lengths in mm, the size would be 3 d. If mm is the unit, write it in "
+                       "the file (columns x_mm, y_mm, z_mm; or length_unit=mm) or in the manifest "
+                       "(`unit: mm`)."),
+            std::string::npos)
+      << in_mm;
+  write_grains("x_mm,y_mm,z_mm\n3,3,3\n9,3,3\n");
+  EXPECT_EQ(refusal_of(manifest("", two)), "") << "the remedy helps";
+}
+
+/// A simple cubic lattice of 4 x 6 x 4 grains. Along z, the grains have another spacing.
+std::string lattice(double spacing, double along_z) {
+  std::string text = "x_d,y_d,z_d\n";
+  for (int k = 0; k < 96; ++k) {
+    text += fmt::format("{},{},{}\n", spacing * (k % 4), spacing * (k / 16), along_z * (k / 4 % 4));
+  }
+  return text;
+}
+
+TEST_F(FromAFile, ACellNarrowerThanTheGrainsIsRefused) {
+  const std::string base = "  walls: smooth\n  grains: 96\n";
+  const auto with_remedy_of = [&](const std::string& message) {
+    const std::size_t at = message.find("`nominal_packing_fraction: ");
+    EXPECT_NE(at, std::string::npos) << message;
+    const std::string remedy = message.substr(at + 1, message.find('`', at + 1) - at - 1);
+    return base + "  fill_packing_fraction: 0.1\n  " + remedy + "\n";
+  };
+  for (const double spacing : {0.92, 1.0, 1.1}) {
+    write_grains(lattice(spacing, spacing));
+    const std::string settling = refusal_of(manifest("settle: {}\n", base));
+    if (spacing < 1) {
+      EXPECT_EQ(settling, "") << "the grains overlap each other as deeply as the walls";
+      continue;
+    }
+    const std::string problem = spacing == 1
+                                    ? "the grains are 4 d wide (x), but the cell of the manifest "
+                                      "is 3.60599"
+                                    : " by 0.694 d. The cell of the manifest is only 3.60599 d";
+    EXPECT_NE(settling.find(problem), std::string::npos) << settling;
+    const std::string at_once = refusal_of(manifest("", base));
+    for (const char* rest : {"", "settle: {}\n"}) {
+      EXPECT_EQ(refusal_of(manifest(rest, with_remedy_of(settling))), "");
+      EXPECT_EQ(refusal_of(manifest(rest, with_remedy_of(at_once))), "");
+    }
+  }
+  write_grains(lattice(1, 1));
+  const std::string images = refusal_of(manifest("", base));
+  EXPECT_NE(images.find("the grain overlaps a periodic image of the grain in line "),
+            std::string::npos)
+      << images;
+  EXPECT_NE(images.find(" by 0.394 d. The cell of the manifest is only 3.60599 d"),
+            std::string::npos)
+      << images;
+
+  // A cell that fits along x but not along z.
+  const std::string wide = with_remedy_of(images);
+  write_grains(lattice(1, 1.1));
+  EXPECT_NE(refusal_of(manifest("", wide)).find(" by 0.3 d. The cell of the manifest is only 4 d"),
+            std::string::npos)
+      << refusal_of(manifest("", wide));
+  EXPECT_EQ(refusal_of(manifest("settle: {}\n", wide)), "") << "settling presses them apart";
+  write_grains(lattice(1, 4.0 / 3));
+  EXPECT_NE(
+      refusal_of(manifest("settle: {}\n", wide)).find(" a periodic image of the grain in line "),
+      std::string::npos);
+}
+
+TEST_F(FromAFile, ACellMuchWiderThanTheGrainsIsWarnedOf) {
+  write_grains(lattice(1, 1));
+  for (const auto& [fraction, warned] : {std::pair(0.4689, false), {0.4, false}, {0.2, true}}) {
+    const std::vector<std::string> warnings =
+        expand(manifest("", fmt::format("  walls: smooth\n  grains: 96\n  fill_packing_fraction: "
+                                        "0.1\n  nominal_packing_fraction: {}\n",
+                                        fraction)))
+            .warnings;
+    EXPECT_EQ(std::ranges::count_if(warnings,
+                                    [](const std::string& one) {
+                                      return one.find(
+                                                 "grains.csv: the grains are 4 d wide (x), "
+                                                 "but the cell of the manifest is ") != one.npos;
+                                    }),
+              warned ? 1 : 0)
+        << fraction;
+  }
 }
 
 TEST_F(FromAFile, ACellTooHighToSettleIsWarnedOf) {
