@@ -1475,14 +1475,15 @@ struct Reader {
         std::ranges::find_if(times, [&](const char* key) { return in.find(key) != nullptr; });
     if (!is_of_run(claim.compare)) {
       require_one(nullptr, times);
-      const bool waits = named == nullptr;  // an estimator without a key of its own takes no level
-      reject_if(stated == times.end(), &in,
-                waits ? "lacks at_cycle, cycles, phi or reaches" : "lacks at_cycle, cycles or phi",
-                waits ? "Write `at_cycle: 10`, `cycles: [1, 15]`, `phi: [0.646, 0.67]` or "
-                        "`reaches: 20`."
-                      : fmt::format("`estimator: {}` needs one of these keys: `at_cycle: 10`, "
-                                    "`cycles: [1, 15]` or `phi: [0.646, 0.67]`.",
-                                    claim.estimator));
+      const string most = "`at_cycle: 10`, `cycles: [1, 15]`";
+      if (stated == times.end() && named == nullptr) {
+        reject(in, "lacks at_cycle, cycles, phi or reaches",
+               fmt::format("Write {}, `phi: [0.646, 0.67]` or `reaches: 20`.", most));
+      } else if (stated == times.end()) {
+        reject(in, "lacks at_cycle, cycles or phi",
+               fmt::format("`estimator: {}` needs one of these keys: {} or `phi: [0.646, 0.67]`.",
+                           claim.estimator, most));
+      }
     } else if (stated != times.end()) {
       reject(*in.find(*stated), fmt::format("{} has one value for each run", claim.compare),
              "Leave it out.");

@@ -108,17 +108,15 @@ std::string number_remedy(const Field& field, const std::string& text) {
     const double value = evaluator_of(text)({});
     if (field.range.contains(value)) return fmt::format("Write the result, {:.12g}.", value);
   }
-  const std::size_t end = plain.find_first_not_of("0123456789.eE+-");
+  const std::size_t end = plain.find_last_of("0123456789") + 1;
   const auto number = parse_real(plain.substr(0, end));
-  if (const auto factor = unit_factor(plain.substr(std::min(end, plain.size())), field.unit);
-      number && factor && field.range.contains(*number * *factor)) {
+  if (!number) return takes(field);
+  const auto factor = unit_factor(plain.substr(end), field.unit);
+  if (factor && field.range.contains(*number * *factor)) {
     return fmt::format("Write {:.12g}, in {}.", *number * *factor, field.unit);
   }
-  if (parse_real(plain.substr(0, plain.find_last_of("0123456789") + 1))) {
-    return fmt::format("Write the number alone{}.",
-                       has_unit(field) ? ", in " + std::string(field.unit) : "");
-  }
-  return takes(field);
+  return fmt::format("Write the number alone{}.",
+                     has_unit(field) ? ", in " + std::string(field.unit) : "");
 }
 
 std::string range_markdown(const Field& field) {
