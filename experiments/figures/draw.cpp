@@ -206,7 +206,7 @@ void mark_primary(const std::vector<ReadManifest>& manifests, ComputedFigure& fi
     if (!figure.experiment.empty() && manifest.experiment != figure.experiment) continue;
     for (const Scale& scale : scales_of(manifest.content)) {
       if (scale.name != figure.scale && !scale.name.empty()) continue;
-      std::ranges::copy(scale.primary, std::back_inserter(figure.primary));
+      std::ranges::transform(scale.primary, std::back_inserter(figure.primary), &PrimaryClaim::id);
     }
   }
   for (Verdict& verdict : figure.verdicts) {

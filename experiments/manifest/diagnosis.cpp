@@ -636,6 +636,64 @@ std::vector<std::pair<string, const Placed<Spec>*>> stated_in(
   return found;
 }
 
+/// The ids of the claims of the manifest and of its figures. A claim with `for_each` has one id for
+/// each value in the runs.
+std::set<string> ids_of_claims(const Manifest& manifest, std::span<const FrameRun> runs) {
+  std::set<string> ids;
+  for (const auto& [place, claim] : stated_in(manifest, &Manifest::claims)) {
+    for (const ClaimSpec& one : each_of(*claim, runs)) ids.insert(one.id);
+  }
+  for (const Figure& figure : computed_figures()) {
+    const bool listed = std::ranges::count(manifest.figures, figure.name) > 0;
+    if (listed) ids.insert(figure.claims.begin(), figure.claims.end());
+  }
+  return ids;
+}
+
+/// The remedy if an entry of `primary` is none of these ids.
+string advise_ids(const std::set<string>& ids) {
+  return ids.empty() ? "Remove it, because the manifest has no claims."
+                     : format("Write one of the ids: {}.", some_of(ids, 20));
+}
+
+/// Reports each entry of `primary` that is the id of no claim at the scales that have the entry.
+/// The values of `for_each` are not checked if they do not follow from this manifest: in claims of
+/// computed figures, and in claims over the runs of other experiments (`of`).
+void check_primary(const Manifest& manifest, const std::vector<Scale>& scales,
+                   ProblemList& problems) {
+  std::map<Position, std::set<string>> known;  // by entry
+  for (const Scale& scale : scales) {
+    if (scale.primary.empty()) continue;
+    const std::set<string> ids =
+        ids_of_claims(manifest, planned_runs(manifest, scale, variants_of(scale)));
+    for (const PrimaryClaim& claim : scale.primary) {
+      known[claim.at].insert(ids.begin(), ids.end());
+    }
+  }
+  std::set<string> unchecked;
+  if (!manifest.of.empty()) {
+    for (const ClaimSpec& claim : manifest.claims) unchecked.insert(claim.id);
+  }
+  for (const Figure& figure : all_figures()) {
+    const bool listed = std::ranges::count(manifest.figures, figure.name) > 0 &&
+                        find_named(computed_figures(), figure.name) != nullptr;
+    if (!listed && figure.of.empty()) continue;
+    unchecked.insert(figure.claims.begin(), figure.claims.end());
+  }
+  const auto without_value = [](const string& id) { return id.substr(0, id.find('@')); };
+  for (const Scale& scale : scales) {
+    for (const auto& [id, at] : scale.primary) {
+      const std::set<string>& ids = known.at(at);
+      if (id.find(' ') != string::npos) continue;  // a statement, from older manifests
+      if (ids.contains(id) || unchecked.contains(without_value(id))) continue;
+      if (std::ranges::count(ids, id, without_value) > 0) continue;
+      problems.add(
+          at, scale.own.contains("primary") ? format("scales.{}.primary", scale.name) : "primary",
+          "is not the id of a claim", printable(id), advise_ids(ids));
+    }
+  }
+}
+
 void warn_of_figures(const Manifest& manifest, const ScaleRuns& here,
                      std::vector<string>& warnings) {
   for (const string& name : manifest.figures) {
@@ -662,10 +720,8 @@ void warn_of_figures(const Manifest& manifest, const ScaleRuns& here,
     warn_of(format("{}: plot {}", place, plot->name), problems_of(*plot, here, all));
   }
   std::map<string, string> said;  // ids of claims, by statement
-  std::vector<string> ids;
   for (const auto& [place, stated_claim] : stated_in(manifest, &Manifest::claims)) {
     for (const ClaimSpec& claim : each_of(*stated_claim, here.runs)) {
-      ids.push_back(claim.id);
       said.emplace(stated(claim, sides_of(claim, here.runs).names).text, claim.id);
       const ClaimProblems found = problems_of(claim, here);
       // A shipped claim (ClaimSpec::listed) may select values that no run of this experiment has.
@@ -680,15 +736,15 @@ void warn_of_figures(const Manifest& manifest, const ScaleRuns& here,
       if (!decided) warn_of(format("{}: claim {}", place, claim.id), found.lacks);
     }
   }
-  for (const string& primary : here.scale.primary) {
-    if (primary.find(' ') == string::npos) continue;  // an id, which reader.cpp has checked
+  for (const auto& [primary, at] : here.scale.primary) {
+    if (primary.find(' ') == string::npos) continue;  // an id, which check_primary() has checked
     const auto found = said.find(primary);
     warnings.push_back(
         found != said.end()
             ? format("{}: primary: '{}' is the statement of a claim. Write its id, {}.",
                      manifest.file, primary, found->second)
-            : format("{}: primary: no claim has the statement '{}'. Write one of the ids: {}.",
-                     manifest.file, primary, fmt::join(ids, ", ")));
+            : format("{}: primary: no claim has the statement '{}'. {}", manifest.file, primary,
+                     advise_ids(ids_of_claims(manifest, here.runs))));
   }
 }
 
@@ -752,6 +808,8 @@ void check_variants(const Manifest& manifest) {
       VariantCheck{manifest, scale, variant, problems}.run();
     }
   }
+  problems.raise();  // check_primary() needs valid variants
+  check_primary(manifest, scales, problems);
   problems.raise();
 }
 

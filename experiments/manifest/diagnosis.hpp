@@ -12,8 +12,9 @@
 
 namespace shearcell {
 
-/// Checks the number of runs, `looks` and `labels`. For each variant at each scale, also checks the
-/// time steps, cell, `start` and `phases`. `manifest`: from read_manifest(). Throws ManifestError.
+/// Checks the number of runs, `looks`, `labels` and `primary`. For each variant at each scale, also
+/// checks the time steps, cell, `start` and `phases`. `manifest`: from read_manifest(). Throws
+/// ManifestError.
 void check_variants(const Manifest& manifest);
 
 /// Why LAMMPS cannot compute these runs; "" if it can, or if LAMMPS is not the engine.

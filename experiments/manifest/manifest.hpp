@@ -157,14 +157,20 @@ struct Start {
   std::string file = {};  ///< relative to the folder of the manifest
   std::optional<LengthUnit> unit = {};
   std::string experiment = {};
-  std::string scale = {};    ///< scale of the recorded run; "": the scale of the sheared run
-  std::string variant = {};  ///< swept values; "" if not given
+  std::string scale = {};  ///< scale of the recorded run; "": the scale of the sheared run
+  nlohmann::json variant = nlohmann::json::object();  ///< swept values; empty if not given
   /// First digits of the run's id, given by `checkpoint` instead of experiment, scale and variant.
   std::string run = {};
   Settings settings = {};  ///< start_seed, start_cycle, start_noise_d
   Position at = {};
 
   bool is_recorded() const { return !experiment.empty() || !run.empty(); }
+};
+
+/// An entry of `primary`: the id (in older manifests: the statement) of a claim.
+struct PrimaryClaim {
+  std::string id;
+  Position at;
 };
 
 /// An entry of `scales`, completed with the keys of the top level; or the top level itself.
@@ -179,8 +185,7 @@ struct Scale {
   Seeds seeds = {};
   Checkpoints checkpoints = {};
   StatedUntil until = {};
-  /// Ids (in older manifests: statements) of the claims that these runs are meant to decide.
-  std::vector<std::string> primary = {};
+  std::vector<PrimaryClaim> primary = {};  ///< the claims that these runs are meant to decide
   /// Number of seeds at each look (interim analysis), ascending. Empty: one look, with all seeds.
   std::vector<std::uint64_t> looks = {};
   std::set<std::string> own = {};  ///< keys that the entry of `scales` itself contains

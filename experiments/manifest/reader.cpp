@@ -6,9 +6,12 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/algorithm/string/erase.hpp>
+#include <boost/algorithm/string/replace.hpp>
 #include <boost/algorithm/string/trim_all.hpp>
 #include <cctype>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -16,6 +19,7 @@
 #include <regex>
 #include <set>
 #include <span>
+#include <sstream>
 #include <utility>
 
 #include "analysis/estimators.hpp"
@@ -28,6 +32,7 @@
 #include "experiments/manifest/schema.hpp"
 #include "experiments/manifest/shipped.hpp"
 #include "experiments/manifest/suggest.hpp"
+#include "experiments/manifest/variants.hpp"
 #include "provenance/io/read_number.hpp"
 #include "provenance/limits.hpp"
 #include "provenance/words.hpp"
@@ -106,10 +111,10 @@ void fields(Start& start, const auto& visit) {
         {.name = "scale", .doc = "scale of the recorded run; default: the scale of this run"});
   visit(start.variant,
         {.name = "variant",
-         .doc = "swept values that select the variant of the recorded run; default: for each "
-                "key that both experiments sweep, the value of this run",
-         .example = "\"fluid=still\"",
-         .longest = kLongestLabel});
+         .doc = "swept values that select the variant of the recorded run, as in `where` or as "
+                "`\"fluid=still\"`; default: for each key that both experiments sweep, the value "
+                "of this run",
+         .example = "{fluid: still}"});
   visit(start.run, {.name = "checkpoint",
                     .doc = "instead of experiment, seed and cycle: `ID@CYCLE`, with the first "
                            "digits (at least eight) of the run's id and a whole cycle",
@@ -323,7 +328,7 @@ void fields(Placed<ClaimSpec>& claim, const auto& visit) {
       {.name = "against",
        .doc = "with `estimator: slope`: the column of the x axis, taken at the first checkpoint of "
               "each run. With `spread_ratio`: the column whose standard deviation is the divisor",
-       .names = can_be_compared,
+       .names = terms,
        .terms = terms});
   visit(claim.where, {.name = "where",
                       .doc = "selects runs for both sides of the claim: values, lists of values, "
@@ -418,7 +423,7 @@ void fields(Manifest& manifest, const auto& visit) {
   visit(manifest.claims,
         {.name = "claims",
          .doc = "your own claims, decided like the claims of the supplement",
-         .example = "[{name: same, compare: phi, at_cycle: 10, between: [{fluid: still}, {fluid: "
+         .example = "[{id: same, compare: phi, at_cycle: 10, between: [{fluid: still}, {fluid: "
                     "cell}], margin: 0.001}]"});
   visit(manifest.base.settings,
         {.name = "base",
@@ -526,15 +531,32 @@ string meant_expression(const string& text) {
   return is_expression(meant) && wrong_in_expression(meant).empty() ? meant : "";
 }
 
+constexpr const char* kAllSeeds =
+    "Plots and claims use all seeds. `show: traces` draws a line for each run.";
+
+bool is_seed(string_view key) {
+  return key == "seed" || key == "seeds";
+}
+
+// Whether the text consists of two or more `terms`, separated by blanks.
+bool lacks_operator(const string& text, std::span<const string_view> terms) {
+  std::istringstream words(text);
+  const std::vector<string> names{std::istream_iterator<string>(words), {}};
+  return names.size() > 1 && std::ranges::all_of(names, [&](const string& name) {
+           return std::ranges::count(terms, name) > 0;
+         });
+}
+
 // Reads the values of keys into the members of structs. After a problem, reading continues, so that
 // all problems are reported at once.
 struct Reader {
   ProblemList& problems;
+  const Node& document;
   const Scale& base;                             // the keys that apply to all scales
   std::span<const Figure> figures_to_list = {};  // the figures allowed in `figures`
 
   // Reports keys that cannot be used in a manifest with the key `of`.
-  void check_of(const Node& document) {
+  void check_of() {
     if (document.find("of") == nullptr) return;
     for (const char* key :
          {"base", "sweep", "settle", "start", "seeds", "checkpoints", "until", "looks", "scales"}) {
@@ -550,6 +572,8 @@ struct Reader {
   }
   // Reports a value of a wrong type. `wanted` is the right type, for example "a list".
   void reject_type(const Node& in, string_view wanted, const string& remedy) {
+    if (in.kind == Node::Kind::map && in.parts.empty())
+      return reject(in, "is an empty map", remedy);
     reject_value(in, fmt::format("is not {}", wanted), remedy);
   }
   // Reports a problem at the value, or at the key, without quoting the value.
@@ -577,6 +601,16 @@ struct Reader {
     }
     if (in.path == printable(in.key) && find_field(in.key) != nullptr) {  // at the top level
       return reject_key(in, "is a parameter", "Move it under `base:`.");
+    }
+    for (const string_view known : allowed) {
+      const Field* field = find_field(known);
+      const auto factor = unit_factor(in.key, known);
+      if (field == nullptr || !has_unit(*field) || !factor) continue;
+      const auto number = read_number<double>(in.text);
+      return reject_key(
+          in, "is an unknown key",
+          number ? fmt::format("Write `{}: {:.12g}`.", known, *number * *factor)
+                 : fmt::format("Write {}, with each value multiplied by {:g}.", known, *factor));
     }
     const Tried* tried = find_tried(in.key, allowed);
     if (tried != nullptr && !tried->remark.empty()) {
@@ -671,8 +705,14 @@ struct Reader {
       any.empty() ? read(in, {.name = "of", .longest = kLongestName}, any)
                   : read(in, experiment, any.front());
       where[in.key] = any;
+      const Node* own = document.find("experiment");
+      if (document.find("of") == nullptr && (own == nullptr || any != std::vector{own->text})) {
+        reject_key(in, "can only be used with `of`",
+                   "Leave it out, because this manifest has the runs of one experiment.");
+      }
       return;
     }
+    if (is_seed(in.key)) return reject_key(in, "is not a parameter", kAllSeeds);
     static const Field cycle = {.name = "cycle", .range = kCycles};  // a key for plots
     const Field* field = in.key == cycle.name ? &cycle : find_field(in.key);
     if (field == nullptr) return reject_unknown(in, parameters());
@@ -686,16 +726,18 @@ struct Reader {
       for (const Node& item : items_of(in, "[1, 2]")) {
         if (auto read = read_scalar(item, *field)) any.push_back(std::move(*read));
       }
+    } else if (in.kind == Node::Kind::map && field->is_choice()) {
+      reject_type(in, "a value or a list of values", remedy_of(*field));
     } else if (in.kind == Node::Kind::map) {
       json& range = where[in.key] = json::object();
       for (const Node& end : in.parts) {
-        if (field->is_choice() || (end.key != "min" && end.key != "max")) {
+        if (end.key != "min" && end.key != "max") {
           reject_key(end, "is not a limit of a range", "Write numbers as `{min: 1, max: 2}`.");
         } else if (auto read = read_scalar(end, *field)) {
           range[end.key] = std::move(*read);
         }
       }
-      if (range.empty()) reject_value(in, "has no limits", "Write `{min: 1, max: 2}`.");
+      if (in.parts.empty()) reject(in, "has no limits", "Write `{min: 1, max: 2}`.");
     } else if (auto read = read_scalar(in, *field)) {
       where[in.key] = std::move(*read);
     }
@@ -705,22 +747,24 @@ struct Reader {
   // from the value.
   json read_selector(const Node& in, bool text = false) {
     json where = json::object();
-    for (string_view rest = text ? in.text : in.key; !rest.empty();) {
-      const string_view part = trimmed(rest.substr(0, rest.find(',')));
+    const string& whole = text ? in.text : in.key;
+    const Position at = text ? in.at : in.key_at;
+    for (string_view rest = whole; !rest.empty();) {
+      const string part = same_spelling(rest.substr(0, rest.find(',')));
       rest.remove_prefix(std::min(rest.find(','), rest.size() - 1) + 1);
       const std::size_t equal = part.find('=');
       if (equal == part.npos) {
-        problems.add(in.key_at, in.path, "does not select variants",
-                     fmt::format("\"{}\"", printable(in.key)),
+        problems.add(at, in.path, "does not select variants",
+                     fmt::format("\"{}\"", printable(whole)),
                      "Write `\"fluid=still\"`, or several values joined by commas.");
         break;
       }
-      const string key(part.substr(0, equal));
+      const string key = part.substr(0, equal);
       read_where({.kind = Node::Kind::scalar,
-                  .at = in.key_at,
-                  .text = string(part.substr(equal + 1)),
+                  .at = at,
+                  .text = part.substr(equal + 1),
                   .key = key,
-                  .key_at = in.key_at,
+                  .key_at = at,
                   .path = in.path + '.' + printable(key)},
                  where);
     }
@@ -772,6 +816,10 @@ struct Reader {
     const bool takes_expressions = in.is_scalar() && !about.terms.empty();
     if (takes_expressions && (is_expression(text) || !meant_expression(text).empty())) {
       if (check_expression(in, about)) value = text;
+    } else if (takes_expressions && lacks_operator(text, about.terms)) {
+      reject_value(in, "lacks an operator between two names", expression_syntax());
+    } else if (about.is_choice() && is_seed(text)) {
+      reject_value(in, "is not a parameter", kAllSeeds);
     } else if (!about.besides.empty() && is_rgb(in)) {
       value = text;
     } else if (about.is_choice()) {
@@ -885,6 +933,17 @@ struct Reader {
       where = read_selector(in, true);
       return;
     }
+    // "base" is the variant of an experiment without a sweep.
+    if (about.name == "variant" && in.is_scalar() && in.text == "base") return;
+    if (in.is_scalar()) {
+      const auto labels = values_of(document.find("labels"));
+      const auto label = std::ranges::find(labels, in.text, &Node::text);
+      return reject_type(in, "a map of swept values",
+                         label == labels.end()
+                             ? remedy_of(about)
+                             : fmt::format("Write the swept values of this label: `\"{}\"`.",
+                                           printable(label->key)));
+    }
     if (!in.is_map()) return reject_type(in, "a map", remedy_of(about));
     for (const Node& part : in.parts) read_where(part, where);
   }
@@ -917,15 +976,24 @@ struct Reader {
       if (name.empty()) continue;
       if (std::ranges::find(names, name) != names.end()) {
         reject_value(item,
-                     fmt::format("names {} twice", about.name == "primary" ? "a claim"
-                                                   : about.name == "of"    ? "an experiment"
-                                                                           : "a figure"),
+                     about.name == "of" ? "names an experiment twice" : "names a figure twice",
                      "Keep one of them.");
       } else if (about.name == "figures" && find_named(figures_to_list, name) == nullptr) {
         reject_value(item, with_nearest("lists an unknown figure", name, names_of(figures_to_list)),
                      "`shearcell figures --help` lists them.");
       }
       names.push_back(name);
+    }
+  }
+
+  void read(const Node& in, const Field& about, std::vector<PrimaryClaim>& claims) {
+    claims.clear();
+    for (const Node& item : items_of(in, about.example)) {
+      PrimaryClaim claim{"", item.at};
+      read(item, {.longest = about.longest}, claim.id);
+      reject_value_if(std::ranges::count(claims, claim.id, &PrimaryClaim::id) > 0, &item,
+                      "names a claim twice", "Keep one of them.");
+      claims.push_back(std::move(claim));
     }
   }
 
@@ -1043,6 +1111,13 @@ struct Reader {
                             : "Set it in `base` or in a scale.");
         continue;
       }
+      if (part.is_scalar() && part.text.find('(') != string::npos) {
+        // In `{KEY: f(1, 2)}`, YAML reads the text after the comma as another key.
+        return reject_type(part, "a list",
+                           fmt::format("Functions are not known. Write the values as a list, or a "
+                                       "range such as {}.",
+                                       kRangeExample));
+      }
       SweepAxis& axis = axes.emplace_back(SweepAxis{part.key, part.key_at, {}});
       const bool is_range = part.kind == Node::Kind::map && !field->is_choice();
       const std::vector<Node> range = is_range ? written_out(part, *field) : std::vector<Node>();
@@ -1115,6 +1190,12 @@ struct Reader {
 
   void read(const Node& in, const Field&, Seeds& seeds) {
     const auto is_range = [](const Node& node) { return node.text.find('-', 1) != string::npos; };
+    if (in.text.find(',') != string::npos && in.text.find(",0") == string::npos &&
+        in.text.find_first_not_of("0123456789-, ") == string::npos) {
+      const string list = boost::erase_all_copy(in.text, " ");
+      return reject_value(in, "is not a list",
+                          fmt::format("Write `[{}]`.", boost::replace_all_copy(list, ",", ", ")));
+    }
     seeds = {.counted = in.kind != Node::Kind::list && !is_range(in), .at = in.key_at};
     if (seeds.counted) {
       std::uint64_t count = 1;
@@ -1254,6 +1335,7 @@ struct Reader {
       plot.drawn = std::clamp<std::size_t>(y->parts.size(), 1, plot.also.size() + 1) - 1;
     }
     const Node *x = in.find("x"), *cycles = in.find("cycles"), *also = in.find("also");
+    if (plot.cycles && plot.cycles->at(1) < plot.cycles->at(0)) cycles = nullptr;  // reported
     const Measure* curve = find_measure(plot.y, MeasureKind::curve);
     const bool is_curve = curve != nullptr, of_run = is_of_run(plot.x);
     const string not_with_curve = "cannot be used with " + plot.y;
@@ -1261,8 +1343,11 @@ struct Reader {
                     fmt::format("Leave it out. The x axis of {} is {}.", plot.y,
                                 is_curve ? curve->x : string_view()));
     reject_value_if(plot.y == plot.x, x, "is also the y of this plot", "Use another measure.");
+    const bool measured = is_measured_of_run(plot.y);
     reject_if(!plot.y.empty() && is_of_run(plot.y) && !of_run, &in,
-              fmt::format("{} has one value for each run", plot.y), "Use a parameter as x.");
+              fmt::format("{} {}", plot.y,
+                          measured ? "has one value for each run" : "contains no measure"),
+              measured ? "Use a parameter as x." : "Use a measure as y, such as phi.");
     if (const Node* minus = in.find("minus"); minus != nullptr && is_curve) {
       reject_key(*minus, not_with_curve, "Use a number as y, because curves cannot be subtracted.");
     }
@@ -1332,10 +1417,12 @@ struct Reader {
 
   void check(const Node& in, const Field& about, Placed<ClaimSpec>& claim) {
     const Node *published = in.find("published"), *reaches = in.find("reaches");
-    const Node* relative = in.find("relative_margin");
-    // Allows only one of these keys in a claim. Requires one of them if `lacking` is not null.
-    const auto require_one = [&](const char* lacking, std::initializer_list<const char*> keys,
-                                 const string& remedy = "") {
+    const Node *relative = in.find("relative_margin"), *against = in.find("against");
+    const std::size_t problems_before = problems.size();
+    Names lacks;
+    // Allows only one of these keys in a claim. If the claim has none of them, adds `lacking`, if
+    // it is not null, to `lacks`.
+    const auto require_one = [&](const char* lacking, std::initializer_list<const char*> keys) {
       const Node* first = nullptr;
       for (const char* key : keys) {
         const Node* one = in.find(key);
@@ -1345,12 +1432,10 @@ struct Reader {
         }
         if (one != nullptr) first = one;
       }
-      if (first == nullptr && lacking != nullptr) {
-        reject(in, fmt::format("lacks {}", lacking), remedy.empty() ? remedy_of(about) : remedy);
-      }
+      if (first == nullptr && lacking != nullptr) lacks.emplace_back(lacking);
     };
     require_one("id", {"id", "name"});
-    reject_if(!is_claim_id(claim.id), &in, "has no id",
+    reject_if(lacks.empty() && !is_claim_id(claim.id), &in, "has no id",
               "Write an id of letters, digits, -, _ and dots: `id: S2.phi`.");
     const Estimator* named = find_named(all_estimators(), claim.estimator);
     const bool of_all = named != nullptr && named->one_side;
@@ -1370,6 +1455,8 @@ struct Reader {
     }
     const bool is_bound = published != nullptr && claim.is != Relation::same;
     require_one(is_bound ? nullptr : "margin", {"margin", "relative_margin"});
+    reject_if(!lacks.empty(), &in, fmt::format("lacks {}", fmt::join(lacks, ", ")),
+              remedy_of(about));
     reject_if(claim.published && !claim.published->value, published, "lacks value",
               "Give the published number as `value`.");
     reject_if(claim.where.contains("cycle"), in.find("where"), "selects checkpoints",
@@ -1377,15 +1464,27 @@ struct Reader {
     reject_if(published == nullptr && !of_all, in.find("of"), "can only be used with published",
               "Use `between` for two variants.");
     claim.relative = relative != nullptr;
-    if (claim.compare.empty()) return;
+    const std::vector<string> of_against = names_in(claim.against);
+    reject_value_if(std::ranges::count(of_against, "cycle") > 0, against,
+                    "is the same for all runs, because it is taken at the first checkpoint",
+                    "For a slope over cycles, write `estimator: slope_over_cycles` and `cycles: "
+                    "[1, 15]`, without `against`.");
+    if (claim.compare.empty() || problems.size() > problems_before) return;
     const auto times = {"at_cycle", "cycles", "phi", "reaches"};
+    const auto stated =
+        std::ranges::find_if(times, [&](const char* key) { return in.find(key) != nullptr; });
     if (!is_of_run(claim.compare)) {
-      require_one(
-          "at_cycle, cycles, phi or reaches", times,
-          "Write `at_cycle: 10`, `cycles: [1, 15]`, `phi: [0.646, 0.67]` or `reaches: 20`.");
-    } else if (const auto stated = std::ranges::find_if(
-                   times, [&](const char* key) { return in.find(key) != nullptr; });
-               stated != times.end()) {
+      require_one(nullptr, times);
+      const string most = "`at_cycle: 10`, `cycles: [1, 15]`";
+      if (stated == times.end() && named == nullptr) {
+        reject(in, "lacks at_cycle, cycles, phi or reaches",
+               fmt::format("Write {}, `phi: [0.646, 0.67]` or `reaches: 20`.", most));
+      } else if (stated == times.end()) {
+        reject(in, "lacks at_cycle, cycles or phi",
+               fmt::format("`estimator: {}` needs one of these keys: {} or `phi: [0.646, 0.67]`.",
+                           claim.estimator, most));
+      }
+    } else if (stated != times.end()) {
       reject(*in.find(*stated), fmt::format("{} has one value for each run", claim.compare),
              "Leave it out.");
     }
@@ -1398,30 +1497,6 @@ struct Reader {
               "cannot be used with a published value of 0", "Use `margin`.");
   }
 
-  // Reports ids in `primary` that belong to no claim of this manifest or of its figures.
-  void check_primary(const Node& document, const Manifest& manifest) {
-    std::vector<string> known;
-    for (const ClaimSpec& claim : manifest.claims) known.push_back(claim.id);
-    for (const Figure& figure : all_figures()) {
-      const bool listed = std::ranges::count(manifest.figures, figure.name) > 0;
-      if (listed || !figure.of.empty()) std::ranges::copy(figure.claims, std::back_inserter(known));
-    }
-    std::vector<const Node*> lists = {document.find("primary")};
-    for (const Node& scale : values_of(document.find("scales"))) {
-      lists.push_back(scale.find("primary"));
-    }
-    for (const Node* list : lists) {
-      for (const Node& item : values_of(list)) {
-        const string id = item.text.substr(0, item.text.find('@'));
-        const bool statement = item.text.find(' ') != string::npos;  // from older manifests
-        if (statement || std::ranges::count(known, id) > 0) continue;
-        reject_value(
-            item, with_nearest("is not the id of a claim", id, Names(known.begin(), known.end())),
-            "Give the `id` of a claim of this manifest or of its figures.");
-      }
-    }
-  }
-
   static std::span<const Node> values_of(const Node* list) {
     return list == nullptr ? std::span<const Node>() : list->parts;
   }
@@ -1429,8 +1504,7 @@ struct Reader {
   // Reports each plot, claim, figure and panel whose name occurs twice or is already the name of a
   // figure or panel of the supplement. If a figure of the supplement is not in `figures`
   // (`listed`), the manifest may define parts of this figure.
-  void check_own_names(const Node& document, std::span<const Figure> supplement,
-                       const std::vector<string>& listed) {
+  void check_own_names(std::span<const Figure> supplement, const std::vector<string>& listed) {
     std::vector<std::pair<const Node*, string>> names, figures;  // {node, its figure}
     Names panels;
     for (const char* list : {"plots", "claims"}) {
@@ -1499,7 +1573,7 @@ Manifest read_manifest(string_view text, string_view file, bool shipped) {
   manifest.text = text;
   manifest.base.at = root.at;
   const std::span<const Figure> known = shipped ? computed_figures() : all_figures();
-  Reader reader{problems, manifest.base, known};
+  Reader reader{problems, root, manifest.base, known};
   if (root.kind != Node::Kind::map) {
     reader.reject_type(root, "a map of keys", "Begin with `experiment: NAME`.");
     problems.raise();
@@ -1515,9 +1589,8 @@ Manifest read_manifest(string_view text, string_view file, bool shipped) {
     problems.add(root.at, "experiment", "is missing", "", "Begin with `experiment: NAME`.");
   }
   if (const Node* base = root.find("base")) manifest.base.at = base->key_at;
-  if (!shipped) reader.check_primary(root, manifest);
-  reader.check_of(root);
-  reader.check_own_names(root, known, manifest.figures);
+  reader.check_of();
+  reader.check_own_names(known, manifest.figures);
   problems.raise();
   return manifest;
 }

@@ -99,17 +99,24 @@ std::string number_remedy(const Field& field, const std::string& text) {
   plain = field.whole ? std::regex_replace(plain, thousands, "")
                       : std::regex_replace(plain, comma, ".");
   if (parse_real(plain)) {
-    return fmt::format("Write {}. A number has a decimal point and no separators.", plain);
+    static const std::regex either("([1-9][0-9]{0,2}),([0-9]{3})");
+    const std::string whole = std::regex_replace(text, either, "$1$2 or ");
+    return fmt::format("Write {}{}. A number has a decimal point and no separators.",
+                       !field.whole && whole.ends_with(' ') ? whole : "", plain);
   }
   if (is_expression(text) && names_in(text).empty() && wrong_in_expression(text).empty()) {
     const double value = evaluator_of(text)({});
     if (field.range.contains(value)) return fmt::format("Write the result, {:.12g}.", value);
   }
-  if (parse_real(plain.substr(0, plain.find_last_of("0123456789") + 1))) {
-    return fmt::format("Write the number alone{}.",
-                       has_unit(field) ? ", in " + std::string(field.unit) : "");
+  const std::size_t end = plain.find_last_of("0123456789") + 1;
+  const auto number = parse_real(plain.substr(0, end));
+  if (!number) return takes(field);
+  const auto factor = unit_factor(plain.substr(end), field.unit);
+  if (factor && field.range.contains(*number * *factor)) {
+    return fmt::format("Write {:.12g}, in {}.", *number * *factor, field.unit);
   }
-  return takes(field);
+  return fmt::format("Write the number alone{}.",
+                     has_unit(field) ? ", in " + std::string(field.unit) : "");
 }
 
 std::string range_markdown(const Field& field) {
@@ -338,6 +345,28 @@ std::optional<ValueProblem> check_value(const Field& field, const json& value) {
   const double number = value.get<double>();
   if (!std::isfinite(number)) return ValueProblem{"is not finite", takes(field)};
   if (!field.range.contains(number)) return ValueProblem{"is out of range", takes(field)};
+  return std::nullopt;
+}
+
+std::optional<double> unit_factor(string_view written, string_view unit) {
+  static constexpr std::pair<string_view, double> prefixes[] = {
+      {"", 1},     {"n", 1e-9}, {"u", 1e-6}, {"\xc2\xb5", 1e-6}, {"m", 1e-3},
+      {"c", 1e-2}, {"k", 1e3},  {"M", 1e6},  {"G", 1e9}};
+  for (std::size_t begin = 0; begin < unit.size(); ++begin) {
+    const string_view before = unit.substr(0, begin), rest = unit.substr(begin);
+    const bool is_key = unit.find('_') != unit.npos;
+    if (begin == 0 ? is_key : !before.ends_with('_') && !before.ends_with('/')) continue;
+    const bool divides = before.ends_with("per_") || before.ends_with('/');
+    if (divides && rest.find('2') != rest.npos) continue;  // the square of a unit
+    for (const auto& [ours, value] : prefixes) {
+      const string_view base = rest.substr(std::min(ours.size(), rest.size()));
+      if (!rest.starts_with(ours) || base.empty() || !std::isalpha(base.front())) continue;
+      for (const auto& [theirs, other] : prefixes) {
+        if (ours == theirs || written != fmt::format("{}{}{}", before, theirs, base)) continue;
+        return divides ? value / other : other / value;
+      }
+    }
+  }
   return std::nullopt;
 }
 

@@ -141,7 +141,7 @@ const Stage& recorded_run(const Manifest& manifest, const Scale& scale, const Va
     return m.newest && m.place.experiment == start.experiment &&
            scale_name(m.place.scale) == scale_name(scale_of_start) &&
            m.place.seed == variant.parameters.start_seed &&
-           (start.variant.empty() || Filter(std::vector{start.variant}).passes(m.place.variant));
+           (start.variant.empty() || selects({start.variant, "", {}}, m.place.swept));
   };
   std::vector<const Stage*> found;
   for (const Stage& stage : known) {
@@ -163,7 +163,7 @@ const Stage& recorded_run(const Manifest& manifest, const Scale& scale, const Va
       start.run.empty()
           ? fmt::format("run of {}{} with seed {}{}", start.experiment, at_scale(scale_of_start),
                         variant.parameters.start_seed,
-                        start.variant.empty() ? "" : " and " + printable(start.variant))
+                        start.variant.empty() ? "" : " and " + words_of(start.variant))
           : fmt::format("shear whose id begins with {}", start.run);
   if (found.empty()) {
     refuse(manifest.file, start.at, "start", fmt::format("the store has no {}", what), "",

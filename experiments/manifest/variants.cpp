@@ -89,9 +89,39 @@ std::string name_of_variant(const json& variant, const std::vector<std::string>&
   return parts.empty() ? "no sweep" : fmt::format("{}", fmt::join(parts, ", "));
 }
 
-/// Normalizes "key=value": removes spaces, writes numbers as this program does ("1.28e-2" gives
-/// "0.0128"), and replaces the symbols and units of variant_names() ("P=954 Pa" gives
-/// "pressure_Pa=954").
+using Parts = std::set<std::pair<std::string, json>>;
+
+/// The parts of a list: {"a", 1} and {"b", 2} for "b=2,a=1.0". A text without `=` has no value.
+Parts parts_of(const std::string& list) {
+  Parts parts;
+  std::istringstream text(list);
+  for (std::string part; std::getline(text, part, ',');) {
+    part = same_spelling(part);
+    const std::size_t equal = std::min(part.find('='), part.size());
+    const std::string value = part.substr(std::min(equal + 1, part.size()));
+    const auto number = read_number<double>(value);
+    parts.emplace(part.substr(0, equal), number ? json(*number) : json(value));
+  }
+  return parts;
+}
+
+/// Whether `parts` has all `wanted` parts. Numbers may differ as in is_within().
+bool has_all(const Parts& parts, const Parts& wanted) {
+  return std::ranges::all_of(wanted, [&](const auto& want) {
+    return std::ranges::any_of(parts, [&](const auto& part) {
+      return part.first == want.first && is_within(part.second, want.second);
+    });
+  });
+}
+
+void apply(const Settings& settings, Parameters& parameters) {
+  for (const auto& [key, setting] : settings) {
+    if (setting.value != "auto") find_field(key)->set(parameters, setting.value);
+  }
+}
+
+}  // namespace
+
 std::string same_spelling(std::string_view part) {
   const std::size_t equal = part.find('=');
   if (equal == part.npos) return std::string(trimmed(part));
@@ -104,25 +134,8 @@ std::string same_spelling(std::string_view part) {
     if (unit != "1" && value.ends_with(unit)) value.remove_suffix(unit.size());
     value = trimmed(value);
   }
-  const auto number = read_number<double>(value);
-  return fmt::format("{}={}", key, number ? fmt::format("{}", *number) : value);
+  return fmt::format("{}={}", key, value);
 }
-
-/// The normalized parts of a list: "a=1" and "b=2" for "b=2,a=1.0".
-std::set<std::string> parts_of(const std::string& list) {
-  std::set<std::string> parts;
-  std::istringstream text(list);
-  for (std::string part; std::getline(text, part, ',');) parts.insert(same_spelling(part));
-  return parts;
-}
-
-void apply(const Settings& settings, Parameters& parameters) {
-  for (const auto& [key, setting] : settings) {
-    if (setting.value != "auto") find_field(key)->set(parameters, setting.value);
-  }
-}
-
-}  // namespace
 
 json value_at(const Scale& scale, std::string_view key) {
   const auto stated = scale.settings.find(key);
@@ -132,8 +145,8 @@ json value_at(const Scale& scale, std::string_view key) {
 Filter::Filter(const std::vector<std::string>& wanted) {
   for (const std::string& text : wanted) {
     Wanted& one = wanted_.emplace_back(Wanted{text, "", parts_of(text)});
-    for (const std::string& part : one.parts) {
-      if (part.find('=') != part.npos) one.keys += part.substr(0, part.find('=')) + ",";
+    for (const auto& [key, value] : one.parts) {
+      if (value != "") one.keys += key + ",";
     }
   }
 }
@@ -141,20 +154,20 @@ Filter::Filter(const std::vector<std::string>& wanted) {
 Filter::Filter(const std::vector<std::uint64_t>& wanted) {
   for (const std::uint64_t number : wanted) {
     const std::string text = std::to_string(number);
-    wanted_.push_back({text, "", {text}});
+    wanted_.push_back({text, "", {{text, ""}}});
   }
 }
 
 bool Filter::passes(const std::string& value, const std::string& name) {
   if (wanted_.empty()) return true;
   if (known_.insert(value).second) seen_.push_back(value);
-  std::set<std::string> parts = parts_of(value), of_name = parts_of(name);
-  const bool same = std::ranges::includes(parts, of_name);
+  Parts parts = parts_of(value), of_name = parts_of(name);
+  const bool same = has_all(parts, of_name);
   if (!same && known_.insert(name).second) seen_.push_back(name);
   parts.merge(of_name);
   std::map<std::string_view, bool> fits;  // by keys
   for (Wanted& one : wanted_) {
-    const bool has = std::ranges::includes(parts, one.parts);
+    const bool has = has_all(parts, one.parts);
     one.found |= has;
     fits[one.keys] |= has;
   }
@@ -223,10 +236,9 @@ std::vector<Variant> variants_of(const Scale& scale) {
 }
 
 bool selects(const VariantLabel& label, const json& variant) {
-  if (!variant.is_object() || label.where.empty()) return false;
+  if (label.where.empty()) return false;
   return std::ranges::all_of(label.where.items(), [&](const auto& item) {
-    const auto found = variant.find(item.key());
-    return found != variant.end() && *found == item.value();
+    return is_within(member_of(variant, item.key().c_str()), item.value());
   });
 }
 

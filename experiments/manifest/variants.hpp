@@ -30,6 +30,10 @@ struct Variant {
   std::uint64_t seeds = std::numeric_limits<std::uint64_t>::max();
 };
 
+/// Writes "key=value" without spaces around its words. Replaces the symbols and units of
+/// variant_names(): "P=954 Pa" gives "pressure_Pa=954".
+std::string same_spelling(std::string_view part);
+
 /// Selects variants, experiments or seeds by texts from the command line. A variant such as
 /// "fluid=cell,amplitude_rad=0.1" has the parts "fluid=cell" and "amplitude_rad=0.1". The variant
 /// fits a text if it has all parts of the text, in any order. Numbers may be written in any
@@ -52,7 +56,7 @@ class Filter {
  private:
   struct Wanted {
     std::string text, keys;
-    std::set<std::string> parts;
+    std::set<std::pair<std::string, nlohmann::json>> parts;  ///< keys and values
     bool found = false;
   };
   std::vector<Wanted> wanted_;
@@ -60,7 +64,7 @@ class Filter {
   std::set<std::string> known_;  ///< the values in seen_
 };
 
-/// Whether the label applies to the variant, an object of swept keys and values.
+/// Whether the label applies to the variant, an object of swept keys and values (is_within()).
 bool selects(const VariantLabel& label, const nlohmann::json& variant);
 
 /// Variant::swept of each variant.

@@ -300,8 +300,8 @@ TEST(Expand, WarnsOnceOfWhatSeveralVariantsHave) {
 TEST(Expand, SelectsVariantsByValueNotBySpelling) {
   const Manifest manifest =
       parse("experiment: e\nbase: {grains: 600}\nsweep: {grid: {drag_kg_per_s: [1.28e-2, 0.1]}}\n");
-  for (const char* wanted :
-       {"drag_kg_per_s=1.28e-2", "drag_kg_per_s=0.01280", " drag_kg_per_s = .0128 "}) {
+  for (const char* wanted : {"drag_kg_per_s=1.28e-2", "drag_kg_per_s=0.01280",
+                             " drag_kg_per_s = .0128 ", "drag_kg_per_s=0.0128000001"}) {
     const Plan plan = expand(manifest, {.variants = {wanted}});
     ASSERT_FALSE(plan.runs.empty());
     for (const PlannedRun& run : plan.runs) EXPECT_EQ(run.place.variant, "drag_kg_per_s=0.0128");

@@ -196,7 +196,40 @@ TEST(FigureWarnings, OfPrimaryClaimsThatAreStatements) {
   }
   EXPECT_EQ(found(says, label), Strings{"test.yaml: primary: no claim has the statement '" + says +
                                         "'. Write one of the ids: own."});
-  EXPECT_TRUE(has(found("C: the size", "figures: [C]\n").back(), "Write one of the ids: own."));
+  EXPECT_TRUE(has(found("C: the size", "figures: [C]\n").back(),
+                  "Write one of the ids: C.critical_size, C.growth, own."));
+  EXPECT_EQ(plan_of("grains: 600", "figures: [C]\nprimary: ['C: the size']\n").warnings,
+            Strings{"test.yaml: primary: no claim has the statement 'C: the size'. Write one of "
+                    "the ids: C.critical_size, C.growth."});
+}
+
+// bad.txt has the entries that are refused.
+TEST(Primary, NamesClaimsWithAndWithoutTheValueOfForEach) {
+  const std::string claims =
+      "claims: [{id: p.one, for_each: amplitude_rad, margin: 1, compare: phi, at_cycle: 1, "
+      "between: [{fluid: still}, {fluid: cell}]}]\n";
+  const std::string scales =
+      "scales: {desk: {sweep: {grid: {fluid: [still, cell], amplitude_rad: [0.05, 0.1]}}}, smoke: "
+      "{sweep: {grid: {fluid: [still, cell], amplitude_rad: [0.1]}}}}\n";
+  for (const char* primary :
+       {"p.one", "p.one@amplitude_rad=0.05", "p.one@amplitude_rad=0.1", "C.growth",
+        "C.critical_size@amplitude_rad=0.05", "S5a.onset@amplitude_rad=0.05"}) {
+    const std::string text = fmt::format("primary: [{}]\nfigures: [C, S5a]\n", primary);
+    EXPECT_NO_THROW(plan_of("cycles: 1", claims + scales + text)) << primary;
+  }
+  const std::string of_others =
+      "experiment: b\nof: [a]\nprimary: [p.one@amplitude_rad=0.07]\n" + claims;
+  EXPECT_NO_THROW(parse_manifest(of_others, "test.yaml")) << "other manifests define the values";
+  EXPECT_NO_THROW(read_manifest("experiment: a\nprimary: [gone]\n", "test.yaml"))
+      << "stores hold such manifests";
+}
+
+TEST(Claims, CanHaveASlopeAgainstAParameter) {
+  const Manifest manifest = parse_manifest(
+      "experiment: a\nsweep: {grid: {amplitude_rad: [0.05, 0.1]}}\nclaims: [{id: s, compare: "
+      "onset_size_phi, estimator: slope, against: amplitude_rad, margin: 1}]\n",
+      "test.yaml");
+  EXPECT_EQ(manifest.claims.at(0).against, "amplitude_rad");
 }
 
 TEST(FigureWarnings, OfExpressionsAndPublishedClaims) {

@@ -211,8 +211,12 @@ TEST_F(Started, RunsOfAnotherPlanAreKnownBeforeTheyAreComputed) {
   for (std::size_t k = 0; k < 2; ++k) {
     EXPECT_EQ(runs[k].stage.parent, first.runs[k].stage.id) << "of the same amplitude";
   }
-  EXPECT_EQ(second(", variant: \"amplitude_rad=0.05\"", amplitudes)[1].stage.parent,
-            first.runs[0].stage.id);
+  for (const char* variant : {"\"amplitude_rad=0.05\"", "{amplitude_rad: 0.05}", "\"A = 0.05 rad\"",
+                              "{amplitude_rad: {max: 0.07}}"}) {
+    EXPECT_EQ(second(fmt::format(", variant: {}", variant), amplitudes)[1].stage.parent,
+              first.runs[0].stage.id)
+        << variant;
+  }
   const auto refused = [&](const std::string& sweep) {
     return message_of<ManifestError>([&] { second("", sweep); });
   };
@@ -333,7 +337,9 @@ TEST_F(Started, WhatDoesNotFitTheStoreIsRefused) {
                       "\"KEY=VALUE\"`. Join several values by commas."),
             std::string::npos);
   EXPECT_EQ(refusal(clones(", variant: \"fluid=cell\"")), "");
-  EXPECT_NE(refusal(clones(", variant: \"fluid=none\"")).find("has no run of tiny"),
+  EXPECT_EQ(refusal(clones(", variant: {fluid: cell}")), "");
+  EXPECT_NE(refusal(clones(", variant: \"fluid=cell,grains=5\""))
+                .find("has no run of tiny with seed 1 and fluid=cell, grains=5"),
             std::string::npos);
   const std::string late = ", variant: \"fluid=cell\"";
   EXPECT_NE(refusal(clones(late, "", "sweep: {grid: {start_cycle: [1, 3]}}\n"))
