@@ -19,6 +19,7 @@ namespace fs = std::filesystem;
 /// SQLite's application_id of the file: "shcd" in ASCII.
 constexpr std::int64_t kApplicationId = 0x73686364;
 constexpr std::int64_t kLayout = 1;
+constexpr std::size_t kDigits = 32;  // of a hash in Digests
 
 constexpr const char* kDerivedTable = R"sql(
 CREATE TABLE derived(
@@ -37,6 +38,13 @@ std::string digest(const DerivedKey& key, std::span<const std::byte> content) {
       .add_fields("shearcell derived 1", key.checkpoint, key.measure, key.version)
       .add(content)
       .hex();
+}
+
+/// The name of an object in Digests.
+std::string digest_name(const DerivedKey& key) {
+  constexpr std::size_t name_digits = 12;
+  return fmt::format("{}-{:.{}}", key.measure.substr(0, key.measure.find(' ')),
+                     Sha256().add_fields(key.measure, key.version).hex(), name_digits);
 }
 
 /// The name under which the n-th damaged file is kept.
@@ -58,11 +66,7 @@ void set_aside(const fs::path& file) {
 }  // namespace
 
 Digests::value_type digest_entry(const DerivedObject& object) {
-  const auto& [checkpoint, measure, version] = object.key;
-  constexpr std::size_t name_digits = 12, digits = 32;
-  return {fmt::format("{}-{:.{}}", measure.substr(0, measure.find(' ')),
-                      Sha256().add_fields(measure, version).hex(), name_digits),
-          digest(object.key, object.content).substr(0, digits)};
+  return {digest_name(object.key), digest(object.key, object.content).substr(0, kDigits)};
 }
 
 DerivedCache::DerivedCache(const fs::path& store_folder, Access access)
@@ -161,13 +165,18 @@ std::vector<std::optional<std::vector<std::byte>>> DerivedCache::get(
   return found;
 }
 
-Digests DerivedCache::digests(const std::string& checkpoint) {
+Digests DerivedCache::digests(const std::string& checkpoint, bool damaged_too) {
   Digests found;
   attempt([&](sqlite::Database& database) {
     sqlite::Statement query(
-        database, "SELECT measure, version, content FROM derived WHERE checkpoint = ?", checkpoint);
+        database, "SELECT measure, version, content, sha256 FROM derived WHERE checkpoint = ?",
+        checkpoint);
     while (query.step()) {
-      found.insert(digest_entry({{checkpoint, query.text(0), query.u64(1)}, query.blob(2)}));
+      const DerivedKey key{checkpoint, query.text(0), query.u64(1)};
+      const std::string sha256 = digest(key, query.blob(2));
+      const bool intact = sha256 == query.text(3);
+      if (!intact && !damaged_too) continue;
+      found.emplace(digest_name(key), sha256.substr(0, intact ? kDigits : 0));
     }
   });
   return found;

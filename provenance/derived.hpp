@@ -48,8 +48,9 @@ class DerivedCache {
   /// Contents of the objects, in the order of `keys`; nothing for an object that is not stored.
   std::vector<std::optional<std::vector<std::byte>>> get(std::span<const DerivedKey> keys);
 
-  /// The digests of all objects of a checkpoint, not verified. Empty if the file cannot be read.
-  Digests digests(const std::string& checkpoint);
+  /// The digests of the objects of a checkpoint that get() would return. With `damaged_too`, also
+  /// has "" for each damaged object. Empty if the file cannot be read.
+  Digests digests(const std::string& checkpoint, bool damaged_too = false);
 
   /// Stores all objects or, after an error, none. Replaces objects with the same keys.
   void put(std::span<const DerivedObject> objects);

@@ -14,6 +14,7 @@
 #include <string>
 #include <system_error>
 
+#include "provenance/derived.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/events.hpp"
 #include "provenance/io/clock.hpp"
@@ -189,10 +190,17 @@ sqlite::Database open_database(const std::filesystem::path& file, Access access)
       "PRAGMA cell_size_check=ON; PRAGMA foreign_keys=ON;"
       "PRAGMA synchronous=EXTRA;");
   if (database.integer("PRAGMA page_count") == 0) {
-    // An empty file is valid only in a new store. If the folder `objects` exists, the log was lost.
-    if (access != Access::create || std::filesystem::exists(file.parent_path() / "objects")) {
+    const std::filesystem::path folder = file.parent_path(), objects = folder / "objects";
+    std::error_code unreadable;  // such a folder does not count as empty
+    if (std::filesystem::exists(folder / DerivedCache::kFile) ||
+        (std::filesystem::exists(objects) && !std::filesystem::is_empty(objects, unreadable))) {
       throw StoreDamaged(file.string() +
                          ": the log is empty; restore it from a backup, or choose another store");
+    }
+    if (access != Access::create) {
+      throw NotFound(file.string() +
+                     ": the log is empty, because the creation of this store was interrupted; "
+                     "`shearcell run` with a manifest completes it");
     }
     create_tables(database);
   }

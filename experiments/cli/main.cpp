@@ -103,7 +103,7 @@ std::string message_of(const std::exception& error) {
   if (is_any<std::bad_alloc>(error)) return kNoMemory;
   const auto* of_system = dynamic_cast<const std::system_error*>(&error);
   if (of_system != nullptr && of_system->code() == std::errc::resource_unavailable_try_again) {
-    return "cannot start a thread; raise the limit of memory (ulimit -v) or processes (ulimit -u)";
+    return "memory or threads ran out; raise their limits (ulimit -v and ulimit -u)";
   }
   const auto* of_path = dynamic_cast<const std::filesystem::filesystem_error*>(&error);
   if (of_path == nullptr) return error.what();

@@ -116,9 +116,14 @@ std::vector<std::string> notes_of(const std::vector<Plan>& plans, const std::vec
   return notes;
 }
 
-// For each experiment, adds a note on the work that the next look (interim analysis) needs.
+// For each experiment, adds a note on the work that the next look (interim analysis) needs. As in
+// verdicts, runs that failed or cannot start count as ended.
 void note_looks(const std::vector<Plan>& plans, const std::vector<Line>& lines,
-                std::vector<std::string>& notes) {
+                const std::vector<Stage>& known, std::vector<std::string>& notes) {
+  std::set<std::string> failed;  // ids
+  for (const Stage& stage : known) {
+    if (stage.state == StageState::failed) failed.insert(stage.id);
+  }
   for (const Plan& plan : plans) {
     for (const Scale& scale : scales_of(plan.manifest)) {
       if (scale.name != plan.scale) continue;
@@ -127,8 +132,10 @@ void note_looks(const std::vector<Plan>& plans, const std::vector<Line>& lines,
         double left = 0;
         for (const Line& line : lines) {
           const Place& place = line.run->place;
+          const Stage& stage = line.stage;
           const bool enters = place.experiment == plan.manifest.experiment &&
-                              std::ranges::count(seeds, place.seed) > 0;
+                              std::ranges::count(seeds, place.seed) > 0 &&
+                              !failed.contains(has_ended(stage.state) ? stage.id : stage.parent);
           left += enters ? line.look.particle_steps : 0;
         }
         return left;
@@ -276,7 +283,7 @@ void plan(const PlanOptions& options, Context& context) {
     notes.push_back(fmt::format("too little disk space: only {} are free in {}", format_bytes(free),
                                 place.string()));
   }
-  note_looks(plans, lines, notes);
+  note_looks(plans, lines, runs, notes);
   if (longer > 0) {
     notes.push_back(fmt::format(
         "`run` also continues {} to the larger number of cycles that an earlier command requested",

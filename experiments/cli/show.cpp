@@ -59,12 +59,16 @@ std::vector<Facts> facts_of_all(const Store& store, const Stage& stage,
   });
 }
 
-/// The measures of the checkpoint, as in `table`. Measures that are not cached are computed.
+/// The measures of the checkpoint, as in `table`. Measures that are not cached are computed. The
+/// file is checked even if all measures are cached.
 Facts measures_at(const Store& store, const CheckpointRecord& record, Context& context) {
   CheckpointMeasures one{record};
   const ToMeasure todo{&one};
-  print_problems(measure_checkpoints(store, {&todo, 1}, table_providers(), {}), "not measured",
-                 context);
+  MeasureOutcome outcome = measure_checkpoints(store, {&todo, 1}, table_providers(), {});
+  if (record.state == CheckpointState::recorded) {
+    outcome += read_in_parallel(1, 1, [&](std::size_t) { store.load_checkpoint(record); }, {});
+  }
+  print_problems(outcome, one.lacking.empty() ? "damaged" : "not measured", context);
   Facts facts;
   for (const auto& [column, known] : facts_of(record, one.measures)) {
     const nlohmann::json value = json_of(known);

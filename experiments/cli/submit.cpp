@@ -8,6 +8,7 @@
 
 #include "experiments/cli/command.hpp"
 #include "experiments/cluster/submission.hpp"
+#include "experiments/manifest/document.hpp"
 #include "experiments/runner/campaign.hpp"
 #include "provenance/io/child_process.hpp"
 #include "provenance/sha256.hpp"
@@ -157,9 +158,10 @@ void check_time(const JobOptions& job) {
   const double needed = static_cast<double>(job.warn_seconds) + kWarningResolution;
   const auto limit = slurm_seconds(job.time);
   if (!limit) {
-    throw CLI::ValidationError("--time", "'" + job.time +
-                                             "' is not a time limit of Slurm: write MINUTES, "
-                                             "HH:MM:SS, DAYS-HH:MM:SS or UNLIMITED");
+    throw CLI::ValidationError(
+        "--time", fmt::format("'{}' is not a time limit of Slurm: write MINUTES, HH:MM:SS, "
+                              "DAYS-HH:MM:SS or UNLIMITED",
+                              printable(job.time)));
   }
   if (*limit <= needed) {
     throw CLI::ValidationError(
@@ -199,7 +201,8 @@ void submit(const SubmitOptions& options, Context& context) {
 
 std::string check_sbatch(const std::string& text) {
   if (!text.starts_with("--") || text.size() == 2) {
-    return fmt::format("'{}' is no option of the form --NAME. Example: --sbatch=--qos=long", text);
+    return fmt::format("'{}' is no option of the form --NAME. Example: --sbatch=--qos=long",
+                       printable(text));
   }
   const std::string option = text.substr(0, text.find('='));
   for (const std::string taken : {"--array", "--clusters", "--test-only", "--wait", "--wrap"}) {
@@ -207,7 +210,7 @@ std::string check_sbatch(const std::string& text) {
     return fmt::format(
         "'{}': with {}, `submit` cannot queue and follow its jobs. Remove this option. "
         "(--array-size limits the number of tasks. To use another cluster, run `submit` there.)",
-        text, taken);
+        printable(text), taken);
   }
   return unfit_value(text);
 }

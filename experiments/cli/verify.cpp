@@ -158,15 +158,22 @@ void print(const VerifyReport& report, const MeasureCheck& measures) {
              format_bytes(static_cast<double>(report.bytes)), counted(report.orphans, "orphan"),
              !report.ok()                                  ? "DAMAGED"
              : report.count(Finding::Severity::unread) > 0 ? "not everything was checked"
+             : measures.absent > 0                         ? "measures are missing"
                                                            : "nothing was changed",
              report.head.seq, report.head.hash);
   if (measures.cached > 0) {
     print_text("recomputed the cached measures of {} of {} checkpoints\n", measures.computed,
                measures.cached);
   }
-  if (measures.absent + measures.not_covered > 0) {
-    print_text("measures of pruned checkpoints: {} missing; {} without hashes in the log\n",
-               measures.absent, counted(measures.not_covered, "checkpoint"));
+  if (measures.absent > 0) {
+    print_text(
+        "measures of pruned checkpoints: {} missing; restore derived.sqlite from a backup, or run "
+        "`shearcell regenerate --all`\n",
+        measures.absent);
+  }
+  if (measures.not_covered > 0) {
+    print_text("not covered: {} without hashes of their measures in the log\n",
+               counted(measures.not_covered, "pruned checkpoint"));
   }
   if (report.ok()) {
     print_text(

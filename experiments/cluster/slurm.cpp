@@ -12,6 +12,7 @@
 #include <regex>
 #include <sstream>
 
+#include "experiments/manifest/document.hpp"
 #include "experiments/manifest/suggest.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/io/child_process.hpp"
@@ -40,7 +41,8 @@ const std::vector<std::string> kRemoved = {
 // Slurm's programs wait 10 s for an answer of Slurm's controller. This program waits longer.
 constexpr double kAnswerSeconds = 15;
 
-// std::regex recurses for each character, so a long text would overflow the stack.
+// Longest text given to Slurm. std::regex recurses for each character, so a long text would
+// overflow the stack.
 constexpr std::size_t kLongest = 1000;  // [bytes]
 
 const std::string kVariable = R"(\$(?:([A-Za-z_]\w*)|\{([A-Za-z_]\w*)\}))";
@@ -77,8 +79,11 @@ std::string unfit_path(const fs::path& path) {
 std::string unfit_value(std::string_view text) {
   constexpr std::string_view kSafe =
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-+.,:;/=@%*()[]|&!";
-  if (!text.empty() && text.find_first_not_of(kSafe) == text.npos) return "";
-  return fmt::format("'{}' is not a value for Slurm; use one word without spaces or quotes", text);
+  const bool safe = !text.empty() && text.find_first_not_of(kSafe) == text.npos;
+  if (safe && text.size() <= kLongest) return "";
+  return fmt::format(
+      "'{}' is not a value for Slurm; use one word of at most {} bytes, without spaces or quotes",
+      printable(text), kLongest);
 }
 
 std::string unfit_scratch(const std::string& text) {
@@ -172,9 +177,9 @@ std::string queue_job(const Job& job, const fs::path& folder) {
       "{}, and {}. So it is not known whether the job {} is queued. The next `submit` looks for "
       "this job before it queues anything. To see or cancel the job: squeue --name={} or scancel "
       "--name={}",
-      sbatch.code != 0
-          ? failure
-          : fmt::format("sbatch printed '{}' instead of a job number", trimmed(sbatch.output)),
+      sbatch.code != 0 ? failure
+                       : fmt::format("sbatch printed '{}' instead of a job number",
+                                     printable(trimmed(sbatch.output))),
       queue, job.name, job.name, job.name));
 }
 

@@ -15,7 +15,8 @@ namespace shearcell {
 /// Why a path cannot be passed to Slurm (too long, a backslash, a control character); "" if it can.
 std::string unfit_path(const std::filesystem::path& path);
 
-/// Why the text cannot be the value of an option of sbatch; "" if it can.
+/// Why the text cannot be the value of an option of sbatch (too long, or a character that a shell
+/// or sbatch would interpret); "" if it can.
 std::string unfit_value(std::string_view text);
 
 /// Why the text cannot name a folder on each node's own disk; "" if it can. The text must be an

@@ -236,9 +236,12 @@ struct VariantCheck {
   }
 };
 
-bool is_formula(const string& text) {
-  const std::size_t first = text.find_first_not_of(' ');
-  return first != text.npos && string_view("=+-@").find(text[first]) != string_view::npos;
+/// Whether spreadsheets would read the text as a formula. With East Asian settings, they also read
+/// the full-width forms of the four characters.
+bool is_formula(string_view text) {
+  text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
+  constexpr string_view begins[] = {"=", "+", "-", "@", "＝", "＋", "－", "＠"};
+  return std::ranges::any_of(begins, [&](string_view one) { return text.starts_with(one); });
 }
 
 /// Checks that each label belongs to a variant of at least one scale and has visible characters,

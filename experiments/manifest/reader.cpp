@@ -831,6 +831,8 @@ struct Reader {
                            fmt::format("It takes one {} of at most {} bytes.",
                                        about.folds ? "text" : "line", about.longest));
       }
+      reject_value_if(about.name == "cannot_be_decided" && as_seen(value).empty(), &in,
+                      "has no visible characters", "Write the reason, or leave out the key.");
       reject_value_if(about.name.ends_with("label") && std::ranges::count(text, '$') % 2 == 1, &in,
                       "has an odd number of $", "Write a formula between two $.");
     } else if (in.is_scalar() && is_name(text)) {

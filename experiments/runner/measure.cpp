@@ -98,8 +98,10 @@ class Measuring {
     const auto found = cache_.get(keys_);
     for (const ToMeasure& one : distinct_) {
       if (one.checkpoint->state == CheckpointState::pruned && !cache_.trouble().empty()) {
-        throw MachineError(cache_.trouble() +
-                           "; the measures of pruned checkpoints are only in derived.sqlite");
+        const std::string why =
+            cache_.trouble() + "; the measures of pruned checkpoints are only in derived.sqlite";
+        if (cache_.is_unread()) throw MachineError(why);
+        throw StoreDamaged(why);
       }
       const auto pruned = sources_.compare_pruned(*one.checkpoint, cache_);
       for (const std::string& damage :

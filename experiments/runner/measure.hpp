@@ -54,7 +54,8 @@ struct ToMeasure {
 /// only the log (ComputedFrom::record). Sets `lacking` to the providers that gave no result.
 /// Results are cached under the checkpoint's recorded SHA-256. If all results of a checkpoint are
 /// cached, its file is not read and may be missing. Throws StoreDamaged, with a remedy, if a cached
-/// result is invalid; MachineError if the cached measures of a pruned checkpoint cannot be read.
+/// result is invalid, or if a checkpoint is pruned and the cache is not ours or damaged;
+/// MachineError if the machine cannot read the cached measures of a pruned checkpoint.
 MeasureOutcome measure_checkpoints(const Store& store, std::span<const ToMeasure> checkpoints,
                                    std::span<const std::string> providers,
                                    const MeasureOptions& options);

@@ -77,7 +77,7 @@ MeasureSources::PrunedMeasures MeasureSources::compare_pruned(const CheckpointRe
   const auto log = all.find(record.sha256);
   PrunedMeasures result;
   if (record.state != CheckpointState::pruned || log == all.end()) return result;
-  const Digests cached = cache.digests(record.sha256);
+  const Digests cached = cache.digests(record.sha256, true);
   for (const auto& [name, digest] : log->second) {
     const auto now = cached.find(name);
     ++result.named;

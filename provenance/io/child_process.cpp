@@ -28,6 +28,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::size_t kLongestMessages = 2000;  // [bytes]
+
 std::vector<std::string> environment_with(const std::vector<std::string>& variables) {
   std::vector<std::string> all;
   for (const std::string& variable : variables) {
@@ -61,15 +63,17 @@ Descriptor memory_file() {
   return file;
 }
 
-std::string text_of(const Descriptor& file) {
+// The text in the file. If it is longer than `most` bytes, only the beginning and "...".
+std::string text_of(const Descriptor& file, std::size_t most = std::string::npos) {
   std::string text;
   std::array<char, 4096> part;
-  for (;;) {
+  while (text.size() <= most) {
     const ssize_t got =
         pread(file.get(), part.data(), part.size(), static_cast<off_t>(text.size()));
     if (got <= 0) return text;
     text.append(part.data(), static_cast<std::size_t>(got));
   }
+  return text.substr(0, most) + "...";
 }
 
 }  // namespace
@@ -200,7 +204,7 @@ std::optional<ProgramOutcome> run_program(const std::vector<std::string>& words,
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
   const int code = program.wait();
-  return ProgramOutcome{code, text_of(output), text_of(messages)};
+  return ProgramOutcome{code, text_of(output), text_of(messages, kLongestMessages)};
 }
 
 }  // namespace shearcell

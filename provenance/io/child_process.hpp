@@ -67,7 +67,7 @@ class ChildProcess {
 struct ProgramOutcome {
   int code = 0;          ///< see ChildProcess::exit_code()
   std::string output;    ///< what the program wrote to standard output
-  std::string messages;  ///< what the program wrote to standard error
+  std::string messages;  ///< what the program wrote to standard error, at most 2000 bytes and "..."
 };
 
 /// Runs the program `words[0]` in `folder` and waits until it ends. Returns nothing when the

@@ -89,17 +89,29 @@ TEST_F(Submit, NamesARemedyWithoutSlurm) {
 }
 
 TEST_F(Submit, RejectsPathsThatSlurmWouldMisread) {
-  for (const Arguments& words :
-       {Arguments{"--partition", "a b"}, Arguments{"--account", "x\n#SBATCH --uid=0"},
-        Arguments{"--time", "soon"}, Arguments{"--time", "2", "--warn", "90"},
-        Arguments{"--sbatch=qos"}, Arguments{"--sbatch=--wrap=a b"}, Arguments{"--engine", "slurm"},
-        Arguments{"--scratch", "/a\nb"}, Arguments{"--scratch", "~/x"},
-        Arguments{"--scratch", "$(rm -rf x)"}, Arguments{"--array-size", "0"},
-        Arguments{"--sbatch=--array=1-2"}, Arguments{"--sbatch=--arr=1"},
-        Arguments{"--sbatch=--clusters=b"}, Arguments{"--sbatch=--wait"},
-        Arguments{"--sbatch=--test-only"}, Arguments{"--sbatch=--wrap=x"},
-        Arguments{"--cpus-per-task", "-1"}}) {
-    expect(2, joined({"submit", manifest_, "--dry-run"}, words));
+  for (const Arguments& words : {Arguments{"--partition", "a b"},
+                                 Arguments{"--account", "x\n#SBATCH --uid=0"},
+                                 Arguments{"--time", "soon"},
+                                 Arguments{"--time", "2", "--warn", "90"},
+                                 Arguments{"--sbatch=qos"},
+                                 Arguments{"--sbatch=--wrap=a b"},
+                                 Arguments{"--engine", "slurm"},
+                                 Arguments{"--scratch", "/a\nb"},
+                                 Arguments{"--scratch", "~/x"},
+                                 Arguments{"--scratch", "$(rm -rf x)"},
+                                 Arguments{"--array-size", "0"},
+                                 Arguments{"--sbatch=--array=1-2"},
+                                 Arguments{"--sbatch=--arr=1"},
+                                 Arguments{"--sbatch=--clusters=b"},
+                                 Arguments{"--sbatch=--wait"},
+                                 Arguments{"--sbatch=--test-only"},
+                                 Arguments{"--sbatch=--wrap=x"},
+                                 Arguments{"--cpus-per-task", "-1"},
+                                 Arguments{"--time", std::string(60'000, '1')},
+                                 Arguments{"--account", std::string(60'000, 'a')},
+                                 Arguments{"--sbatch=" + std::string(60'000, 'a')}}) {
+    const Outcome refused = expect(2, joined({"submit", manifest_, "--dry-run"}, words));
+    EXPECT_LT(refused.err.size(), 1000U);
   }
   expect(2, {"submit", manifest_, "--dry-run", "--time", "2"}, {"120 s leaves no time"});
   expect(0, {"submit", manifest_, "--dry-run", "--time", "0"}, {"--time=0"});
@@ -245,6 +257,15 @@ TEST_F(Submit, SaysSoIfNoJobIsQueuedThoughSlurmDidNotRefuse) {
           "no job of this name is in the queue", "scancel --name="});
   slurm_that_works();
   EXPECT_FALSE(json({"submit", manifest_, "--json"}).at("submission").is_null()) << "and goes on";
+}
+
+TEST_F(Submit, CutsLongMessages) {
+  const std::string print = "printf '%0300000d' 0";
+  for (const auto& [answer, says] :
+       {std::pair(print, "000...' instead of a job number"), {print + " >&2; exit 1", "000..."}}) {
+    slurm_that_works(answer);
+    EXPECT_LT(expect(1, {"submit", manifest_}, {says}).err.size(), 4000U) << answer;
+  }
 }
 
 TEST_F(Submit, LeavesNothingOfARejectedSubmission) {

@@ -118,7 +118,10 @@ TEST(LongTexts, AreRefusedAndOverflowNoStack) {
   EXPECT_EQ(unfit_scratch("/" + a.substr(0, 900)), "");
   for (const std::string& text : {ones, ones + "-1", "1-" + ones, "1:" + ones, ones + ":1:1", a}) {
     EXPECT_FALSE(slurm_seconds(text));
+    EXPECT_TRUE(has(unfit_value(text), "at most 1000 bytes"));
+    EXPECT_LT(unfit_value(text).size(), 300U);
   }
+  EXPECT_EQ(unfit_value(a.substr(0, 1000)), "");
 }
 
 TEST(Scratch, HasTheValuesOfVariablesHereAndRunsNothing) {

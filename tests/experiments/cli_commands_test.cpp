@@ -66,6 +66,18 @@ TEST_F(Commands, TheMostSevereFaultDecidesTheExitCode) {
   expect(4, {"show", last_run(), "--json"}, {"not measured: "});
 }
 
+TEST_F(Commands, ShowChecksTheNewestFileEvenIfItsMeasuresAreCached) {
+  campaign(manifest_, {"--cycles", "1"});
+  expect(0, {"show", last_run()}, {"newest checkpoint:"});  // caches all measures
+  const fs::path newest = path(newest_file(last_run()));
+  truncate_file(newest);
+  expect(4, {"show", last_run()}, {"damaged: ", "newest checkpoint:"});
+  fs::remove(newest);
+  expect(4, {"show", last_run(), "--json"}, {"damaged: ", "the file is missing"});
+  fs::create_directory(newest);
+  expect(4, {"show", last_run()}, {"damaged: ", "it is not a regular file"});
+}
+
 // Displacements of cycle 2 need the checkpoint of cycle 1.
 TEST_F(Commands, ExportSaysWhichMeasuresItLacks) {
   campaign(manifest_, {"--cycles", "2"});
@@ -252,10 +264,23 @@ TEST_F(Commands, PlanShowsWhatIsDoneAndShared) {
 }
 
 TEST_F(Commands, PlanSaysWhatTheNextLookTakes) {
-  write("m.yaml", tiny_manifest("", "seeds: 4\nlooks: [3, 4]\n"));
+  const std::string text = tiny_manifest("", "seeds: 4\nlooks: [3, 4]\n");
+  write("m.yaml", text);
   expect(0, {"plan", "m.yaml", "--cycles", "1"},
          {"tiny: the next planned look (interim analysis) uses 3 of 4 seeds "});
-  expect(0, {"run", "m.yaml", "--cycles", "1", "--seeds", "3", "-q"});
+  expect(0, {"run", "m.yaml", "--cycles", "1", "--seeds", "2", "-q"});
+  expect(0, {"plan", "m.yaml", "--cycles", "1"},
+         {"tiny: the next planned look (interim analysis) uses 3 of 4 seeds "});
+  // A run whose packing failed counts as ended, as in verdicts.
+  Store store(path("shearcell-store"), Access::write);
+  ExpandOptions all;
+  all.cycles = 1;
+  declared(store, text, all);
+  for (const Stage& stage : runs_of_kind(store, "prepare")) {
+    if (stage.memberships.front().place.seed != 3) continue;
+    store.start_stage(stage.id, {});
+    store.fail_stage(stage.id, "blew up");
+  }
   expect(0, {"plan", "m.yaml", "--cycles", "1"},
          {"tiny: the next planned look (interim analysis) uses 4 of 4 seeds "});
 }

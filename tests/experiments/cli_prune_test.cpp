@@ -362,6 +362,22 @@ TEST_F(Prune, OnlyCopiesOfMeasuresAreCoveredByTheLog) {
        [&] { sql("UPDATE derived SET content = x'00' WHERE measure LIKE 'core%'"); },
        4,
        {"core-", "does not have the digest"}},
+      {"without its hash",
+       [&] {
+         sql("UPDATE derived SET sha256 = '" + std::string(64, '0') +
+             "' WHERE checkpoint = (SELECT min(checkpoint) FROM derived)");
+       },
+       4,
+       {"does not have the digest"}},
+      {"with the hash of another checkpoint",
+       [&] {
+         sql("UPDATE derived SET sha256 = (SELECT sha256 FROM derived AS other WHERE "
+             "other.measure = derived.measure AND other.checkpoint > derived.checkpoint LIMIT 1) "
+             "WHERE measure LIKE 'scalars%' AND checkpoint = (SELECT min(checkpoint) FROM "
+             "derived)");
+       },
+       4,
+       {"scalars-", "does not have the digest"}},
       {"swapped",
        [&] {
          sql("UPDATE derived SET content = (SELECT content FROM derived AS other WHERE "
@@ -379,11 +395,11 @@ TEST_F(Prune, OnlyCopiesOfMeasuresAreCoveredByTheLog) {
       {"emptied",
        [&] { fs::resize_file(cache, 0); },
        0,
-       {" missing; 0 checkpoints without hashes in the log"}},
+       {" orphans: measures are missing\n", " missing; restore derived.sqlite from a backup"}},
       {"deleted",
        [&] { fs::remove(cache); },
        0,
-       {" missing; 0 checkpoints without hashes in the log"}},
+       {" orphans: measures are missing\n", " missing; restore derived.sqlite from a backup"}},
       {"without one measure",
        [&] { sql("DELETE FROM derived WHERE measure LIKE 'core%'"); },
        0,
@@ -403,9 +419,13 @@ TEST_F(Prune, OnlyCopiesOfMeasuresAreCoveredByTheLog) {
   fs::remove(cache);
   fs::create_directory(cache);
   expect(4, {"verify"}, {"error: measures: ", "this is a folder, link or device"});
+  expect(4, {"table"}, {"this is a folder, link or device", "only in derived.sqlite"});
   fs::remove(cache);
   sqlite::Database(cache, Access::create).execute("PRAGMA application_id=7; CREATE TABLE t(x)");
   expect(4, {"verify"}, {"error: measures: ", "belongs to another program"});
+  for (const char* command : {"table", "figures", "report"}) {
+    expect(4, {command}, {"belongs to another program", "only in derived.sqlite"});
+  }
   // The remedy that the message gives.
   fs::remove_all(path("shearcell-store"));
   fs::copy(path("sound"), path("shearcell-store"), fs::copy_options::recursive);
@@ -440,7 +460,7 @@ TEST_F(Prune, AStorePrunedByAnEarlierVersionIsNotCovered) {
     store.prune(store.prunable({}));
   }
   fs::rename(path("aside"), cache);
-  expect(0, {"verify"}, {"20 checkpoints without hashes in the log", "nothing was changed\n"});
+  expect(0, {"verify"}, {"not covered: 20 pruned checkpoints", "nothing was changed\n"});
   expect(0, {"table"});
 }
 

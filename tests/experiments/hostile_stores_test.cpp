@@ -15,9 +15,18 @@ const std::string kBackup = "from a backup";
 std::vector<Case> damaged_logs() {
   const auto log = [](const auto& change) { return at("store.sqlite", change); };
   const std::string odd = "a folder, link or device";
+  const Damage interrupted = [](const fs::path& store) {  // while the store was created
+    fs::remove_all(store);
+    fs::create_directories(store / "objects");
+    write_bytes(store / "store.sqlite", "");
+  };
   return {
       reported("log_cut_in_half", "status", 4, log(truncate_file), "damaged", kBackup),
       reported("log_empty", "status", 4, log(written("")), "the log is empty", kBackup),
+      reported("log_empty_of_a_new_store", "verify", 2, interrupted, "creation of this store",
+               "shearcell run"),
+      reported("log_empty_of_a_new_store_that_run_completes", "run m.yaml --cycles 1", 0,
+               interrupted, "3 stages computed"),
       reported("log_missing", "run m.yaml", 4, log(removed), "the log is lost", kBackup),
       reported("log_is_text", "status", 4, log(written(std::string(9999, 'x'))),
                "not an SQLite database", "from a backup"),

@@ -74,6 +74,16 @@ TEST_F(DerivedCacheTest, DoesNotReturnADamagedOrMisplacedObject) {
   sql("UPDATE derived SET content = x'00' WHERE checkpoint = '" + run_id(1) + "'");
   EXPECT_EQ(get(key(1)), std::nullopt);
   EXPECT_EQ(get(key(2)), bytes_of("content"));
+  {
+    DerivedCache cache(folder_.path());
+    const DerivedObject object{key(2), bytes_of("content")};
+    EXPECT_EQ(cache.digests(run_id(1)), Digests());
+    EXPECT_EQ(cache.digests(run_id(2)), Digests({digest_entry(object)}));
+    const Digests damaged = cache.digests(run_id(1), true);
+    ASSERT_EQ(damaged.size(), 1U);
+    EXPECT_EQ(damaged.begin()->first, digest_entry(object).first);
+    EXPECT_EQ(damaged.begin()->second, "");
+  }
   // A sound object under the key of another.
   sql("UPDATE derived SET checkpoint = '" + run_id(3) + "' WHERE checkpoint = '" + run_id(2) + "'");
   EXPECT_EQ(get(key(3)), std::nullopt);
