@@ -133,21 +133,28 @@ std::optional<LengthUnit> unit_of(string_view name) {
   return name == "cgs" ? LengthUnit::cm : value_of<LengthUnit>(name);
 }
 
-/// `units`: whether listed names may end in a unit, as in x_m. A name that is not listed can still
-/// be recognized as a diameter, which is only checked, or as a velocity, which is refused: earlier
-/// versions ignored such velocities, so reading them now would change packings with known ids. For
-/// the same reason, columns such as x_mm or "x [m]" are only read if there is no x, x_m or x_d.
-Meaning meaning_of(string_view column, bool units) {
+/// `units`: whether listed names may end in a unit, as in x_m. `count`: the number of values in the
+/// column. A name that is not listed can still be recognized as a diameter, which is only checked,
+/// or as a position or velocity, which is refused: earlier versions ignored such velocities, so
+/// reading them now would change packings with known ids. For the same reason, columns such as x_mm
+/// or "x [m]" are only read if there is no x, x_m or x_d.
+Meaning meaning_of(string_view column, bool units, int count = 1) {
   // A prefix that LAMMPS uses, the stem of the name, and a unit or an index.
   static const std::regex parts(
       "([cf]_|d2?_(?=...)|v_(?!(?:[xyzmd]|.m)(?:\\W|_|$)))?(.+?)"
       "((?:[ _]|[ _]*[\\[(])(d|[mcu]?m|\u00b5m|\u03bcm)(_per_s|/s)?[\\])]?|"
       "[ _]*[\\[({/:.].*|[ _](m|d|si|lj|.?.m)([ _]?(per|p)?[ _]?s)?)?");
-  static const std::regex size(
-      "r|rads?|d|dias?|sizes?|sigma|(?!max|min|cut).*(radius|radii|diam(?!o)).*");
+  static const string grain = "(?:particle|grain|sphere|atom|bead|ball)?";
+  static const string other = "(?!max|min|cut|.*(?:curvature|gyration|ratio))";
+  static const std::regex radius(grain + "(?:r|rads?)|rp|" + other + ".*(?:radius|radii).*");
+  static const std::regex diameter(grain + "(?:d|dias?|sizes?|sigma)|dp|durchmesser|" +
+                                   "(?:aspherical)?shape[xyz\\[]|" + other + ".*diam(?!o).*");
   static const std::regex velocity(
-      "(?!.*(ang|rot|omega|spin))"
-      "((v|mom|speed)[xyz0-9]?|p[xyz]|vel.*|[xyz](v|vel|dot)|.*(veloc|momenta|momentum).*)");
+      "(?!.*(ang|rot|omega|spin|vir|vor))"
+      "((v|mom|speed)[xyz0-9]?|[pu][xyz\\[]|v.{0,3}[xyz]u?|vel.*|[xyz](v|vel|dot)|"
+      "d([xyzr]|pos)dt|.*(veloc|momenta|momentum).*)");
+  static const std::regex position(
+      "(pos|positions?|coord(inate)?s?|points?)[xyz0-9\\[]?|[xyz](su?|pos|coord)");
   const string name = lower(column);
   std::smatch found;
   if (name.size() > 64 || !std::regex_match(name, found, parts)) return {};  // limits recursion
@@ -165,17 +172,48 @@ Meaning meaning_of(string_view column, bool units) {
     if (meaning.count == 1) meaning.first += static_cast<int>(at);
     return meaning;
   }
-  std::erase_if(stem, [](unsigned char c) { return std::isalnum(c) == 0; });
+  const string suffix = found[3];
+  const bool component = count == 3 || (suffix.size() > 1 && suffix.size() < 4 &&
+                                        string_view("0123xyz").find(suffix[1]) != string::npos);
   Meaning meaning;
   meaning.rank = Meaning::probable;
   meaning.unit = unit;
-  if (std::regex_match(stem, size)) {
-    meaning.first = kDiameter;
-    meaning.factor = stem.front() == 'r' || stem.find("radi") != stem.npos ? 2 : 1;
-  } else if (std::regex_match(stem, velocity)) {
-    meaning.first = kVx;
+  for (string text : {stem, component ? stem + '[' : stem, stem + suffix}) {
+    std::erase_if(text, [](unsigned char c) { return std::isalnum(c) == 0 && c != '['; });
+    if (std::regex_match(text, radius)) meaning.factor = 2;
+    meaning.first = meaning.factor > 1 || std::regex_match(text, diameter) ? kDiameter
+                    : std::regex_match(text, velocity)                     ? kVx
+                    : std::regex_match(text, position)                     ? kX
+                                                                           : kQuantities;
+    if (meaning.first != kQuantities) break;
   }
   return meaning;
+}
+
+/// Whether a name, such as a key, concerns the box, a unit or the kind of the coordinates.
+bool concerns_geometry(string_view name) {
+  static const std::regex geometry(
+      "lattice|box|origin($|[^a-z])|(^|[^a-z]|unit|super|sim)cell(?!_height_d$)|^properties$|"
+      "^columns$|^(l|len|length|size)_?[xyz]$|^[xyz]_?(lo|hi|min|max|len|length|size)($|[^a-z])|"
+      "^(fractional|scaled|reduced)|^coord(inate)?s?($|_?(type|system|mode|style|format))|"
+      "^(?!energy|force|stress|pressure|mass|charge|temp)(.*[^a-z])?"
+      "(length|distance|position|velocity|time)?units?"
+      "($|_?(of|length|distance|position|velocity|time|system|style))");
+  return std::regex_search(lower(name.substr(0, 64)), geometry);  // limits the recursion
+}
+
+/// Whether the text has as many numbers in a row as a box: 3, 6, 9 or 12.
+bool may_be_box(string text) {
+  std::ranges::replace_if(
+      text, [](char c) { return string_view(",;\"'{}[]()").find(c) != string::npos; }, ' ');
+  text += " end";
+  std::size_t row = 0;
+  for (const string_view word : split(text, ' ')) {
+    const bool number = read_number<double>(word).has_value();
+    if (!number && row > 0 && row <= 12 && row % 3 == 0) return true;
+    row = number ? row + 1 : 0;
+  }
+  return false;
 }
 
 class PackingReader {
@@ -208,6 +246,9 @@ class PackingReader {
   }
 
  private:
+  static constexpr const char* kEdges = "gives the box by edge vectors, which cannot be read";
+  static constexpr const char* kStyles = "Write the data file with atom_style sphere or atomic.";
+  static constexpr const char* kBounds = "Write the box as xlo xhi, ylo yhi and zlo zhi.";
   static constexpr const char* kFormats =
       "Use extended XYZ (its first line is the number of grains), LAMMPS data (with \"500 atoms\" "
       "in its header), a LAMMPS dump, or CSV whose first line names the columns, such as "
@@ -315,7 +356,8 @@ class PackingReader {
     if (std::ranges::count(not_read_, printable(name)) == 0) not_read_.push_back(printable(name));
   }
 
-  /// The pairs KEY=VALUE of a comment. Blanks may be around `=`, and quotes around VALUE.
+  /// The pairs KEY=VALUE of a comment, and the text between pairs as values without key. Blanks may
+  /// be around `=`, and quotes or brackets around VALUE.
   static std::vector<std::pair<string_view, string_view>> pairs_of(string_view rest) {
     const auto cut = [&](std::size_t size) {
       const string_view front = rest.substr(0, size);
@@ -324,15 +366,22 @@ class PackingReader {
     };
     std::vector<std::pair<string_view, string_view>> pairs;
     while (!rest.empty()) {
-      const string_view key = cut(rest.find_first_of("= \t,"));
-      cut(rest.find_first_not_of(" \t,"));
-      if (!rest.starts_with('=')) continue;
+      const string_view key = cut(rest.find_first_of("= \t,;\"'"));
+      cut(rest.find_first_not_of(" \t,;\"'"));
+      if (!rest.starts_with('=')) {
+        if (key.empty()) continue;
+        const bool follows = !pairs.empty() && pairs.back().first.empty();
+        const char* from = follows ? pairs.back().second.data() : key.data();
+        if (follows) pairs.pop_back();
+        pairs.emplace_back("", string_view(from, key.data() + key.size()));
+        continue;
+      }
       cut(1);
       const bool blank = !cut(rest.find_first_not_of(" \t")).empty();
-      const bool quoted = rest.starts_with('"') || rest.starts_with('\'');
-      const std::size_t end = quoted ? rest.find(rest.front(), 1) : rest.npos;
+      const std::size_t mark = rest.empty() ? rest.npos : string_view("\"'{[(").find(rest.front());
+      const std::size_t end = mark == rest.npos ? mark : rest.find("\"'}])"[mark], 1);
       const string_view word =
-          rest.substr(0, end == rest.npos ? rest.find_first_of(" \t,") : end + 1);
+          rest.substr(0, end == rest.npos ? rest.find_first_of(" \t,;") : end + 1);
       const bool of_next = blank && end == rest.npos && word.find('=') != word.npos;  // "a= b=1"
       pairs.emplace_back(key, of_next ? string_view() : cut(word.size()));
     }
@@ -349,21 +398,21 @@ class PackingReader {
                .more = "further columns"};
     static constexpr string_view keys[] = {"Lattice", "Origin", "Properties", "length_unit",
                                            "velocity_unit"};
-    static const std::regex geometric(
-        "lattice|cell|box|((cell|box)_)?origin|properties|columns|"
-        "((length|position|velocity)_)?units?",
-        std::regex::icase);
+    static const std::regex other("pbc|.*(stress|virial|strain|dipole|force|field|gravity).*",
+                                  std::regex::icase);
     std::map<string_view, string_view> values;
     for (const auto& [key, value] : pairs_of(line_)) {
-      if (key.size() > 64 || !std::regex_match(key.begin(), key.end(), geometric)) {
-        if (key != "pbc" || value != "\"F F T\"") leave(key);
+      const bool box =
+          may_be_box(string(value)) && !std::regex_match(string(key.substr(0, 64)), other);
+      if (!box && !concerns_geometry(key)) {
+        if (key != "pbc" || value != "\"F F T\"") leave(key.empty() ? "comment" : key);
         continue;
       }
       const bool blanks = value.data() != key.data() + key.size() + 1;
       if (std::ranges::count(keys, key) == 0 || (blanks && !key.ends_with("unit"))) {
         refuse_part(
-            key, "", "cannot be read in this form",
-            fmt::format("Use one of the keys {}, without blanks around `=`, or remove this key.",
+            key.empty() ? value : key, "", "cannot be read in this form",
+            fmt::format("Use one of the keys {}, without blanks around `=`, or remove this part.",
                         fmt::join(keys, ", ")));
       }
       const bool quoted = value.size() > 1 && (value.front() == '"' || value.front() == '\'');
@@ -371,12 +420,15 @@ class PackingReader {
         refuse_part(key, "", "is a key that occurs twice", "Keep one of them.");
       }
     }
+    take_text("unit");
     for (const char* key : {"length_unit", "velocity_unit"}) {
       const string_view unit = values[key];
       if (unit.data() == nullptr) continue;
       take_unit(key, unit.substr(0, unit.size() - (unit.ends_with("/s") ? 2 : 0)));
     }
-    if (values.contains("Lattice")) read_lattice(values["Lattice"], values["Origin"]);
+    if (values.contains("Lattice") || values.contains("Origin")) {
+      read_lattice(values["Lattice"], values["Origin"]);
+    }
     if (values.contains("Properties")) read_properties(values["Properties"]);
     read_rows(read_number<std::uint64_t>(trimmed(counted_in)), counted_in);
   }
@@ -427,20 +479,22 @@ class PackingReader {
     moving_ = {.columns = columns_of("id vx vy vz"), .more = "angular velocities"};
     string section, style;
     while (next_line()) {
+      if (section.empty()) take_text("units");
       const std::size_t comment = std::min(line_.find('#'), line_.size());
       const string_view body = trimmed(line_.substr(0, comment));
       if (body.empty()) continue;
       if (std::isalpha(static_cast<unsigned char>(body.front())) != 0) {
         section = body;
         style = trimmed(line_.substr(std::min(comment + 1, line_.size())));
-        if (section != "Atoms" && section != "Velocities") leave(section);
+        if (section != "Atoms" && section != "Velocities") leave_of_data(body);
       } else if (section.empty()) {
         const std::vector<string_view> words = split(body, ' ');
         if (words.size() == 2 && words[1] == "atoms") {
           count = read_number<std::uint64_t>(words[0]).value_or(0);
           stated_in = line_;
+        } else if (!ours) {
+          read_bounds(body, words);
         }
-        if (!ours) read_bounds(words);
       } else if (section == "Atoms") {
         if (grains_.rows.empty()) take_style(style, split(body, ' ').size(), ours);
         grains_.rows.push_back(body);
@@ -458,13 +512,7 @@ class PackingReader {
   /// Reads the units from the title and, in an export of this program, the planes of the cell.
   /// Returns whether the file is such an export.
   bool read_title() {
-    static const std::regex unit(
-        "\\bunits?\\b\\W{1,9}(m|si|d|lj|cgs|real|metal|micro|nano|electron|[cmun]m)\\b");
-    const string title(line_.substr(0, 500));  // limits the recursion of std::regex
-    if (std::smatch found; std::regex_search(title, found, unit)) {
-      take_unit("units", line_.substr(static_cast<std::size_t>(found.position(1)),
-                                      static_cast<std::size_t>(found.length(1))));
-    }
+    take_text("units");
     const std::size_t at = line_.find("cell ");
     if (!line_.starts_with("LAMMPS data file by shearcell") || at == line_.npos) return false;
     const std::vector<string_view> words = split(line_.substr(at + 5), ' ');
@@ -474,18 +522,36 @@ class PackingReader {
     return true;
   }
 
-  void read_bounds(const std::vector<string_view>& words) {
-    if (words.back().ends_with("vec")) {
-      refuse_part(words.back(), "", "gives the box by edge vectors, which cannot be read",
-                  "Write the box as xlo xhi, ylo yhi and zlo zhi.");
-    }
+  /// Reads a line of the header.
+  void read_bounds(string_view line, const std::vector<string_view>& words) {
+    const string_view low = words.size() == 4 && words[2].ends_with("lo") ? words[2] : "";
+    const std::size_t axis = low.empty() ? low.npos : string_view("xyz").find(low.front());
+    if (words.back().ends_with("vec")) refuse_part(words.back(), "", kEdges, kBounds);
     if (words.size() == 6 && words[3] == "xy") {
       set_lean(numbers(std::span(words).first(3), "tilt").cwiseAbs().maxCoeff());
+    } else if (axis != string_view::npos) {
+      set_planes(static_cast<Eigen::Index>(axis), words[0], words[1]);
+    } else if (words.size() > 1 && read_number<double>(words[1])) {
+      refuse_part(line, "", "cannot be read in this form", kBounds);
+    } else if (words[0] != "0" && words.back() != "types") {
+      leave_of_data(line);
     }
-    if (words.size() != 4 || !words[2].ends_with("lo")) return;
-    const std::size_t axis = string_view("xyz").find(words[2].front());
-    if (axis == string_view::npos) return;
-    set_planes(static_cast<Eigen::Index>(axis), words[0], words[1]);
+  }
+
+  /// Refuses or leaves a line of the header, or a section.
+  void leave_of_data(string_view part) {
+    static const std::regex shapes("(.* )?(ellipsoids|lines|triangles|bodies)");
+    static const std::regex tables("atoms|vel.*");
+    const string text = lower(part.substr(0, 64));
+    if (std::regex_match(text, shapes)) {
+      refuse_part(part, "", "describes grains that are not spheres", kStyles);
+    }
+    const bool table = std::regex_match(text, tables);
+    if (table || concerns_geometry(part)) {
+      refuse_part(part, "", "cannot be read in this form",
+                  table ? "Name the section Atoms or Velocities, or remove it." : kBounds);
+    }
+    leave(part);
   }
 
   /// Sets the columns by the atom style that LAMMPS writes after "Atoms #". If the file gives no
@@ -502,7 +568,7 @@ class PackingReader {
       refuse_line(line_,
                   style.empty() ? fmt::format("atoms with {} fields cannot be read", fields)
                                 : fmt::format("the atom style {} cannot be read", printable(style)),
-                  "Write the data file with atom_style sphere or atomic.");
+                  kStyles);
     }
     grains_.columns = columns_of(columns);
     grains_.more = "image flags";
@@ -517,32 +583,48 @@ class PackingReader {
       const string_view item = trimmed(line_);
       if (item.starts_with("ITEM: ATOMS")) {
         if (!count) refuse_line(line_, "the number of atoms is missing", "Use a complete dump.");
-        grains_ = {.header = line_,
-                   .remedy = "Write these columns: dump ... custom ... id x y z vx vy vz.",
-                   .columns = columns_of(item.substr(string_view("ITEM: ATOMS").size()))};
+        grains_ = {
+            .header = line_,
+            .remedy =
+                "Write these columns: dump ... custom ... id x y z vx vy vz. Scaled coordinates, "
+                "such as xs, cannot be read.",
+            .columns = columns_of(item.substr(string_view("ITEM: ATOMS").size()))};
         return read_rows(count, stated_in);
       }
-      const bool bounds = item.starts_with("ITEM: BOX BOUNDS");
-      require_line("the rest of the dump");
-      if (item == "ITEM: UNITS") take_unit("units", trimmed(line_));
-      if (item == "ITEM: NUMBER OF ATOMS") {
+      if (!item.starts_with("ITEM:")) continue;
+      const string_view name = trimmed(item.substr(string_view("ITEM:").size()));
+      if (item.starts_with("ITEM: BOX BOUNDS")) {
+        read_dump_box(item);
+      } else if (name == "UNITS") {
+        require_line("the rest of the dump");
+        take_unit("units", trimmed(line_));
+      } else if (name == "NUMBER OF ATOMS") {
+        require_line("the rest of the dump");
         count = read_number<std::uint64_t>(trimmed(line_));
         stated_in = line_;
+      } else if (concerns_geometry(name)) {
+        refuse_part(name, "", "cannot be read in this form",
+                    "Use ITEM: BOX BOUNDS and ITEM: UNITS as LAMMPS writes them, or remove this "
+                    "section.");
+      } else if (!name.starts_with("TIME")) {
+        leave(name);
       }
-      if (bounds) read_dump_box(item);
     }
     refuse_line(line_, "the dump ends before its atoms", "Use a complete dump.");
   }
 
-  /// Reads the three lines of the box; the first of them is in line_.
+  /// Reads the three lines of the box after the line with `item`.
   void read_dump_box(string_view item) {
+    if (item.find("abc") != item.npos) {
+      refuse_part(item, "", kEdges, "Write the dump without `dump_modify triclinic/general yes`.");
+    }
     const bool leans = item.find("xy") != item.npos;
     const std::vector<string_view> words_of_item = split(item, ' ');
     const auto kinds = std::span(words_of_item).last(3);  // "ss ss pp"
     const bool ours = kinds[0] != "pp" && kinds[1] != "pp" && kinds[2] == "pp";
     if (kinds[2] != "BOUNDS" && !ours) leave(fmt::format("boundary {}", fmt::join(kinds, " ")));
     for (const int k : {0, 1, 2}) {
-      if (k > 0) require_line("the rest of the box");
+      require_line("the rest of the box");
       const std::vector<string_view> words = split(line_, ' ');
       if (words.size() != (leans ? 3U : 2U)) {
         refuse_line(line_, "does not give a lower and an upper bound", "Use a complete dump.");
@@ -581,6 +663,26 @@ class PackingReader {
                .separator = separator_of(header)};
     units_in_names_ = true;
     read_rows();
+  }
+
+  /// Reads the unit from the text in line_, such as "lengths in mm". Scaled coordinates are refused
+  /// like an unknown unit.
+  void take_text(const char* key) {
+    static const std::regex unit(
+        "\\b(?:(?:units?|coord\\w{0,9})\\b"
+        "(?:[\\s=:\"'\\[(]|of|in|are|is|lengths?|distances?|positions?){1,12}|"
+        "in\\s{1,9}(?!(?:real|metal|micro|nano|electron|si|lj|cgs)\\b))"
+        "(real|metal|micro|nano|electron|si|lj|cgs|m|d|(?:[cmunp]|\xC2\xB5|\xCE\xBC)m|fractional|"
+        "scaled|reduced|(?:milli|centi|micro|nano)?met(?:er|re)s?|angstroms?)\\b(?!\\s*=|-)|"
+        "\\b(?:fractional|scaled|reduced)\\s{1,9}coord|"
+        "(?:\\b|_)scale[\\s_]?(?:factor)?[\\s=:]{1,9}[0-9.]+",
+        std::regex::icase);
+    const string text(line_.substr(0, 20'000));
+    for (std::sregex_iterator at(text.begin(), text.end(), unit), end; at != end; ++at) {
+      const std::size_t group = (*at)[1].matched ? 1 : 0;
+      take_unit(key, line_.substr(static_cast<std::size_t>(at->position(group)),
+                                  static_cast<std::size_t>(at->length(group))));
+    }
   }
 
   /// Sets the unit of lengths from the value of a key. The value "lj" sets no unit.
@@ -645,14 +747,15 @@ class PackingReader {
     std::optional<std::optional<LengthUnit>> unit;  // of the columns read so far
     std::vector<bool> used(table.columns.size());
     for (const auto rank : {Meaning::listed, Meaning::second_best, Meaning::probable}) {
+      const std::vector<Use> better = uses;
       std::size_t field = 0;
       for (std::size_t k = 0; k < used.size(); ++k) {
         const Column& column = table.columns[k];
         const auto at = std::exchange(field, field + static_cast<std::size_t>(column.count));
-        Meaning meaning = meaning_of(column.name, units_in_names_);
+        Meaning meaning = meaning_of(column.name, units_in_names_, column.count);
         if (meaning.count > 1 && column.count_text.empty()) meaning.rank = Meaning::probable;
         if (meaning.first == kQuantities || meaning.rank != rank) continue;
-        if (rank != Meaning::listed && holds(uses, meaning.first)) continue;
+        if (holds(better, meaning.first)) continue;
         used[k] = true;
         use(meaning, column, at, uses);
         if (meaning.first > kDiameter) continue;  // not a length
@@ -667,6 +770,9 @@ class PackingReader {
     if (unit && *unit) set_unit(**unit, table.header);
     for (std::size_t k = 0; k < used.size(); ++k) {
       const string_view name = table.columns[k].name;
+      if (!used[k] && (lower(name) == "unit" || lower(name) == "units")) {
+        refuse_part(name, "", "is a unit that cannot be read", grains_.remedy);
+      }
       if (!used[k]) leave(name.empty() ? fmt::format("column {}", k + 1) : string(name));
     }
     return uses;
@@ -674,9 +780,13 @@ class PackingReader {
 
   void use(const Meaning& meaning, const Column& column, std::size_t at, std::vector<Use>& uses) {
     if (meaning.rank == Meaning::probable && meaning.first != kDiameter) {
-      refuse_part(column.name, "", "cannot be read under this name",
-                  "Name the columns x, y, z, vx, vy, vz (in extended XYZ pos:R:3 and vel:R:3), or "
-                  "remove this column. Velocities must be in units of length per second.");
+      refuse_part(
+          column.name, "", "cannot be read under this name",
+          meaning.first == kX
+              ? grains_.remedy
+              : "Name the columns x, y, z, vx, vy, vz (in extended XYZ pos:R:3 and vel:R:3), or "
+                "remove this column. Velocities must be in units of length per second. In CSV, "
+                "the names can give this unit: vx_m_per_s or vx_d_per_s.");
     }
     if (meaning.count != column.count) {
       refuse_part(
@@ -726,8 +836,9 @@ class PackingReader {
         const double value = use.factor * number(unquoted(fields[use.field]), kNamesInMessages[q]);
         const double other = std::exchange(row.value[q], value);
         if (other == 0 || std::fabs(value - other) <= kTolerance * std::fabs(other)) continue;
-        refuse_line(line, fmt::format("gives two diameters, {:.6g} and {:.6g}", other, value),
-                    "Keep one column of radii or diameters.");
+        refuse_line(
+            line, fmt::format("gives two diameters, {:.6g} and {:.6g}", other, value),
+            "The grains must be spheres. Keep one column of radii or diameters." + about_diameter_);
       }
       if (holds(uses, kWall) && row.value[kWall] >= table.first_wall) {
         ++wall_grains_;
