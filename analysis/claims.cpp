@@ -79,10 +79,12 @@ Claim stated(const ClaimSpec& claim, const std::array<std::string, 2>& sides) {
                                                 : fmt::format("{}", claim.margin));
   }
   std::string text = claim.statement;
-  if (text.empty() && claim.published) {
-    text = fmt::format(
-        "{}: {} is {} {}{}", claim.id, name, same ? "as published," : how + " than published,",
-        published_in_words(*claim.published), sides[0].empty() ? "" : ", for " + sides[0]);
+  if (text.empty() && has_one_side(claim)) {
+    const std::string as = claim.published ? "as " : fmt::format("within {} of ", claim.margin);
+    text = fmt::format("{}: {} is {}{}{}", claim.id, name, same ? as : how + " than ",
+                       claim.published ? "published, " + published_in_words(*claim.published)
+                                       : std::string(estimator_of(claim).reference),
+                       sides[0].empty() ? "" : ", for " + sides[0]);
   } else if (text.empty()) {
     text = fmt::format("{}: {} is {} for {} {} {}", claim.id, name, how, sides[0],
                        same ? "and" : "than for", sides[1]);
@@ -271,12 +273,13 @@ std::vector<std::string> problems_of_sides(const ClaimSpec& claim, const ClaimSi
     if (variants == 1 || (variants > 1 && (averages || estimator_of(claim).over_variants)) ||
         (variants == 0 && !planned))
       continue;
-    problems.push_back(
-        (claim.between[k].empty()
-             ? fmt::format("there are {} variants; `of` must select one variant.", variants)
-             : fmt::format(
-                   "{}; `{}` must select one variant{}.", variants_have(variants, claim.between[k]),
-                   claim.published ? "of" : "between", claim.published ? "" : " on each side")));
+    nlohmann::json where = claim.where;
+    where.update(claim.between[k]);
+    problems.push_back(fmt::format("{}; `{}` must select one variant{}.",
+                                   where.empty() ? fmt::format("there are {} variants", variants)
+                                                 : variants_have(variants, where),
+                                   has_one_side(claim) ? "of" : "between",
+                                   has_one_side(claim) ? "" : " on each side"));
   }
   const auto& [a, b] = sides.runs;
   if (problems.empty() && !a.empty() && !b.empty() && a.front()->stage.id == b.front()->stage.id) {

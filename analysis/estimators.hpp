@@ -31,8 +31,11 @@ struct Estimator {
   std::string_view key = {};  ///< a key that a claim must have to use this estimator; "": none
   /// Claims may compare measures of runs (true), of checkpoints (false), or of either (empty).
   std::optional<bool> of_run = false;
-  bool over_variants = false;  ///< a group of runs may contain several variants
-  bool one_side = false;       ///< its claims have one group, even without a published number
+  bool over_variants = false;      ///< a group of runs may contain several variants
+  bool one_side = false;           ///< its claims have one group, even without a published number
+  bool compares_variants = false;  ///< the group must contain several variants
+  std::string_view reference =
+      "0";  ///< what a claim with one group compares with, if not published
   /// Returns a Scalar, which computes one number per run. The estimate is the mean of these numbers
   /// or, for two groups, the difference of their means. If null, `decide` gives the verdict.
   Scalar (*scalar)(const ClaimSpec& claim) = nullptr;

@@ -2,6 +2,7 @@
 #include "analysis/frame.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -131,28 +132,26 @@ std::vector<std::string> keys_telling_apart(std::span<const nlohmann::json> vari
   return keys;
 }
 
-std::string averaged_key(std::span<const FrameRun> runs, const std::vector<std::string>& keys) {
+std::string averaged_key(RunGroup runs, const std::vector<std::string>& keys) {
   std::map<std::vector<nlohmann::json>, nlohmann::json> curves;  // first variant of each curve
-  for (const FrameRun& run : runs) {
+  for (const FrameRun* run : runs) {
     std::vector<nlohmann::json> curve;
-    for (const std::string& key : keys) curve.push_back(parameter_of(run, key));
+    for (const std::string& key : keys) curve.push_back(parameter_of(*run, key));
     const nlohmann::json& first =
-        curves.try_emplace(std::move(curve), run.place.swept).first->second;
-    for (const auto& [key, value] : run.place.swept.items()) {
+        curves.try_emplace(std::move(curve), run->place.swept).first->second;
+    for (const auto& [key, value] : run->place.swept.items()) {
       if (first.value(key, nlohmann::json()) != value) return key;
     }
   }
   return "";
 }
 
-void require_told_apart(const std::string& figure, std::span<const FrameRun> runs,
-                        const std::vector<std::string>& keys, const std::string& remedy) {
-  const std::string key = averaged_key(runs, keys);
-  if (key.empty()) return;
-  const std::string& experiment = runs.front().place.experiment;
+void require_told_apart(const std::string& figure, RunGroup runs, const std::string& averaged,
+                        const std::string& remedy) {
+  if (averaged.empty()) return;
   throw UsageError(
       fmt::format("figure {} would average over the values of {} that experiment {} sweeps; {}",
-                  figure, key, experiment, remedy));
+                  figure, averaged, runs.front()->place.experiment, remedy));
 }
 
 std::vector<std::string> varied_keys(std::span<const nlohmann::json> variants,
@@ -186,7 +185,17 @@ PackingGroups by_packing(RunGroup group) {
 std::string words_of(const nlohmann::json& values) {
   std::string text;
   for (const auto& [key, value] : values.items()) {
-    text += (text.empty() ? "" : ", ") + key + "=" + value_text(value);
+    text += (text.empty() ? "" : ", ") + key;
+    const bool min = value.is_object() && value.contains("min");
+    const bool max = value.is_object() && value.contains("max");
+    if (min) text += (max ? " " : " >= ") + value_text(value["min"]);
+    if (max) text += (min ? " to " : " <= ") + value_text(value["max"]);
+    if (min || max) continue;
+    std::vector<std::string> any;
+    for (const nlohmann::json& one : value.is_array() ? value : nlohmann::json::array({value})) {
+      any.push_back(value_text(one));
+    }
+    text += fmt::format("={}", fmt::join(any, " or "));
   }
   return text;
 }

@@ -140,7 +140,8 @@ std::vector<double> over_packings(RunGroup runs, std::span<const double> values)
 /// Mean over runs of the measure at the first checkpoint of each run; NaN without checkpoints.
 double at_start(RunGroup runs, const std::string& measure);
 
-/// Writes parameters and their values as a text such as "fluid=still, walls=rough".
+/// Writes parameters and their values as a text such as "fluid=still, walls=rough". A list is
+/// written as "fluid=still or cell", a range as "grains >= 600" or "amplitude_rad 0.05 to 0.1".
 std::string words_of(const nlohmann::json& values);
 
 /// Reduces `keys` to the keys that are needed to distinguish all variants. If several keys
@@ -156,9 +157,9 @@ std::vector<std::string> varied_keys(std::span<const FrameRun> runs, std::string
 /// A plot draws one curve for each combination of values of `keys`. If a curve would average over
 /// the values of another swept key, returns this key, else "". Ignores keys that change only
 /// together with `keys`.
-std::string averaged_key(std::span<const FrameRun> runs, const std::vector<std::string>& keys);
-/// Throws UsageError if averaged_key() returns a key. The message ends with `remedy`.
-void require_told_apart(const std::string& figure, std::span<const FrameRun> runs,
-                        const std::vector<std::string>& keys, const std::string& remedy);
+std::string averaged_key(RunGroup runs, const std::vector<std::string>& keys);
+/// Throws UsageError if `averaged`, from averaged_key(), is not "". The message ends with `remedy`.
+void require_told_apart(const std::string& figure, RunGroup runs, const std::string& averaged,
+                        const std::string& remedy);
 
 }  // namespace shearcell

@@ -52,14 +52,6 @@ bool draws_runs(const PlotSpec& plot) {
 
 // --- Select ---
 
-/// A run that the plot draws.
-struct Selected {
-  const FrameRun* run;
-  std::vector<const CheckpointMeasures*> checkpoints = {};
-  /// Runs of the variant PlotSpec::minus from the same packing as `run`. Their mean is subtracted.
-  std::vector<const FrameRun*> partners = {};
-};
-
 /// The column's value for the run at the checkpoint, minus the mean of the partners' values.
 double value_of(const NumberColumn& column, const Selected& one,
                 const CheckpointMeasures* checkpoint) {
@@ -74,59 +66,81 @@ double value_of(const NumberColumn& column, const Selected& one,
   return own - over_runs(values).mean.value_or(std::nan(""));
 }
 
-/// Selects runs and checkpoints. With PlotSpec::minus, each run needs a partner with the same
-/// packing, and each checkpoint needs a partner at the same cycle. Sets a note for the caption.
-std::vector<Selected> select(const PlotSpec& plot, const Frame& frame, std::string& note) {
-  std::vector<Selected> selected;
+}  // namespace
+
+std::vector<const FrameRun*> Selection::runs() const {
+  std::vector<const FrameRun*> all;
+  for (const Selected& one : drawn) all.push_back(one.run);
+  return all;
+}
+
+Selection selected_by(const PlotSpec& plot, std::span<const FrameRun> runs) {
+  Selection selection;
   json of_runs = plot.where;
   of_runs.erase("cycle");
-  const auto take = [&](const FrameRun& run) -> Selected& {
-    Selected& one = selected.emplace_back(Selected{&run});
+  if (!plot.minus.empty()) selection.subtracted = runs_with(plot.minus, runs);
+  const PackingGroups packings = by_packing(selection.subtracted);
+  const NumberColumn y(plot.y);
+  for (const FrameRun& run : runs) {
+    const bool subtracted = std::ranges::count(selection.subtracted, &run) > 0;
+    if (subtracted || !has_parameters(run, of_runs)) continue;
+    const auto same = packings.find(packing_of(run));
+    if (!plot.minus.empty() && same == packings.end()) {
+      selection.alone.push_back(&run);
+      continue;
+    }
+    Selected& one = selection.drawn.emplace_back(Selected{&run});
+    if (same != packings.end()) one.partners = same->second;
+    const auto has_partner = [&](const CheckpointMeasures& checkpoint) {
+      return std::ranges::any_of(one.partners, [&](const FrameRun* partner) {
+        const CheckpointMeasures* other = checkpoint_at(*partner, checkpoint.cycle);
+        return other != nullptr && std::isfinite(y(*partner, other));
+      });
+    };
     for (const CheckpointMeasures& checkpoint : run.checkpoints) {
       const bool wanted =
           !plot.where.contains("cycle") || is_within(checkpoint.cycle, plot.where.at("cycle"));
-      if (wanted) one.checkpoints.push_back(&checkpoint);
+      const bool alone = !plot.minus.empty() && !is_of_run(plot.y) && !has_partner(checkpoint);
+      if (wanted && !alone) one.checkpoints.push_back(&checkpoint);
     }
-    return one;
-  };
-  if (plot.minus.empty()) {
-    for (const FrameRun& run : frame.runs) {
-      if (has_parameters(run, of_runs)) take(run);
-    }
-    return selected;
   }
-  const std::vector<const FrameRun*> others = runs_with(plot.minus, frame.runs);
-  const std::size_t variants = count_variants(others);
+  return selection;
+}
+
+std::string averaged_by(const PlotSpec& plot, RunGroup runs) {
+  if (plot.by.empty() || is_measured_of_run(plot.x)) return "";
+  std::vector<std::string> keys = names_in(plot.x);
+  keys.insert(keys.end(), {plot.by, plot.panel});
+  return averaged_key(runs, keys);
+}
+
+namespace {
+
+/// The runs that the plot draws. Sets a note on PlotSpec::minus for the caption. Throws UsageError
+/// if a curve would average over a swept key, or if several variants would be subtracted.
+std::vector<Selected> select(const PlotSpec& plot, const Frame& frame, std::string& note) {
+  Selection selection = selected_by(plot, frame.runs);
+  const auto& [drawn, subtracted, alone] = selection;
+  const std::size_t variants = count_variants(subtracted);
   if (variants > 1 && !plot.listed) {
     throw UsageError(fmt::format("plot {}: {}", plot.name, problem_of_minus(plot, variants)));
   }
-  if (variants != 1) {
+  if (!problem_of_minus(plot, variants).empty()) {
     note = fmt::format("{} {}", variants == 0 ? "No run has" : "Several variants have",
                        words_of(plot.minus));
     return {};
   }
-  const PackingGroups packings = by_packing(others);
-  const NumberColumn y(plot.y);
-  for (const FrameRun& run : frame.runs) {
-    const auto same = packings.find(packing_of(run));
-    if (same == packings.end() || std::ranges::count(others, &run) > 0) continue;
-    if (!has_parameters(run, of_runs)) continue;
-    Selected& one = take(run);
-    one.partners = same->second;
-    if (is_of_run(plot.y)) continue;
-    std::erase_if(one.checkpoints, [&](const CheckpointMeasures* checkpoint) {
-      return std::ranges::none_of(one.partners, [&](const FrameRun* partner) {
-        const CheckpointMeasures* other = checkpoint_at(*partner, checkpoint->cycle);
-        return other != nullptr && std::isfinite(y(*partner, other));
-      });
-    });
+  require_told_apart(plot.name, selection.runs(), averaged_by(plot, selection.runs()),
+                     "remove the key `by` of the plot to draw a curve for each variant");
+  if (!plot.minus.empty()) {
+    const std::string& name = subtracted.front()->name;
+    note = fmt::format("Differences from {} with the same packing{}",
+                       name.empty() ? words_of(plot.minus) : name,
+                       alone.empty() ? ""
+                                     : fmt::format("; {} of {} runs have no run to subtract",
+                                                   alone.size(), alone.size() + drawn.size()));
   }
-  const std::size_t all = frame.runs.size() - others.size(), alone = all - selected.size();
-  const std::string& name = others.front()->name;
-  note = fmt::format(
-      "Differences from {} with the same packing{}", name.empty() ? words_of(plot.minus) : name,
-      alone == 0 ? "" : fmt::format("; {} of {} runs have no run to subtract", alone, all));
-  return selected;
+  return std::move(selection.drawn);
 }
 
 /// The cycle of the plot: PlotSpec::cycle, or the last cycle that all runs have.
@@ -357,10 +371,30 @@ void set_look(const SeriesSpec& stated, std::string& colour, int& point) {
   if (symbol < marker_names.size()) point = symbol == 0 ? 0 : curve_symbol(symbol - 1);
 }
 
+/// The colours and symbols that the manifest states: in this plot, then in its other plots. If two
+/// plots state the same colour, the entries of the second plot do not hold in other plots.
+std::vector<StatedLook> stated_looks(const PlotSpec& plot, const Plots& others) {
+  std::vector<StatedLook> looks;
+  std::set<std::string> taken;  // colours that earlier plots state
+  const auto add = [&](const PlotSpec& from) {
+    for (const SeriesSpec& one : from.series) {
+      if (!one.column.empty()) continue;
+      StatedLook& look = looks.emplace_back(StatedLook{one.where});
+      set_look(one, look.colour, look.point);
+      if (taken.contains(look.colour)) look.colour.clear();
+    }
+    for (const StatedLook& look : looks) taken.insert(look.colour);
+  };
+  if (plot.listed) return looks;
+  add(plot);
+  if (others != nullptr) std::ranges::for_each(*others, add);
+  return looks;
+}
+
 /// Sets the title and the style given in the series entry.
 void apply(const SeriesSpec& stated, const PlotSpec& plot, bool named, Curve& curve) {
   if (!stated.label.empty() && !(plot.listed && named)) curve.title = formula(stated.label);
-  if (!stated.colour.empty()) curve.look.join = Join::line;
+  if (!stated.colour.empty()) curve.look.join = curve.look.alone = Join::line;
   set_look(stated, curve.look.colour, curve.look.point);
 }
 
@@ -392,20 +426,6 @@ void set_curves(const Looks& looks, const NameVariants& names, Panel& panel) {
     json values = json::array();
     for (const auto& [name, value] : key.items()) values.push_back(value);
     ordered.emplace(Place{styles[k], std::move(values), k}, std::move(curve));
-  }
-  // A colour that a manifest sets for one curve is used for no other curve.
-  std::set<std::string> taken;
-  for (const SeriesSpec& one : plot.series) taken.insert(plot.listed ? "" : colour_of(one));
-  for (auto& [place, curve] : ordered) {
-    const std::size_t style = std::get<0>(place);
-    const bool stated = style < plot.series.size() && !plot.series[style].colour.empty();
-    if (stated || !taken.contains(curve.look.colour)) continue;
-    const auto free = std::ranges::find_if(safe_colours, [&](const char* colour) {
-      return !taken.contains(colour) && std::ranges::none_of(ordered, [&](const auto& other) {
-        return other.second.look.colour == colour;
-      });
-    });
-    if (free != safe_colours.end()) curve.look.colour = *free;
   }
   for (auto& [place, curve] : ordered) panel.curves.push_back(std::move(curve));
   if (is_measured_of_run(plot.x) && !draws_runs(plot)) average_x(panel.curves);
@@ -606,14 +626,14 @@ Series series_of(const Curve& curve) {
   return {.title = curve.title,
           .colour = curve.look.colour,
           .point = curve.look.point,
-          .join = Join::line,
+          .join = curve.look.join,
           .filter = {"variant", curve.variant}};
 }
 
 /// Removes the symbols of a curve, since symbols at every point would hide the line.
 void leave_out_symbol(const Curve& curve, Series& series) {
   series.point = 0;
-  series.join = curve.look.join;
+  series.join = curve.look.alone;
 }
 
 /// A thin line or a cloud of points for each run. Only the first run of a curve has a title.
@@ -983,13 +1003,8 @@ void share_ranges(std::vector<Table>& tables) {
   }
 }
 
-FigureResult make_plot(const PlotSpec& plot, const Frame& frame, const NameVariants& names) {
-  if (!plot.by.empty() && !is_measured_of_run(plot.x)) {
-    std::vector<std::string> keys = names_in(plot.x);
-    keys.insert(keys.end(), {plot.by, plot.panel});
-    require_told_apart(plot.name, frame.runs, keys,
-                       "remove the key `by` of the plot to draw a curve for each variant");
-  }
+FigureResult make_plot(const PlotSpec& plot, const Frame& frame, const NameVariants& names,
+                       const Plots& others) {
   std::string less;                              // the caption's note on PlotSpec::minus
   std::map<json, std::vector<Selected>> panels;  // by the value of PlotSpec::panel
   for (Selected& one : select(plot, frame, less)) {
@@ -998,7 +1013,9 @@ FigureResult make_plot(const PlotSpec& plot, const Frame& frame, const NameVaria
   }
   // An empty panel is drawn, and its caption says why it is empty.
   if (panels.empty() && !less.empty()) panels[nullptr] = {};
-  const Looks looks(frame);
+  std::vector<std::string> shared = names_in(plot.x);
+  shared.push_back(plot.panel);
+  const Looks looks(frame, stated_looks(plot, others), std::move(shared));
   FigureResult result;
   std::vector<json> wheres;
   for (auto& [value, members] : panels) {
@@ -1103,11 +1120,12 @@ bool draws_every_cycle(const PlotSpec& plot) {
   return find_curve(plot.y) == nullptr && !is_of_run(plot.x);
 }
 
-Figure plot_figure(const PlotSpec& plot, const NameVariants& names) {
+Figure plot_figure(const PlotSpec& plot, const NameVariants& names, const Plots& others) {
   const Measure* measured = find_curve(plot.y);
   const std::string x(measured == nullptr ? plot.x : measured->x);
-  Figure figure{plot.name, plot.y + " against " + x,
-                [plot, names](const Frame& frame) { return make_plot(plot, frame, names); }};
+  Figure figure{plot.name, plot.y + " against " + x, [plot, names, others](const Frame& frame) {
+                  return make_plot(plot, frame, names, others);
+                }};
   for (const SeriesSpec& one : plot.series) {
     for (const auto& [key, value] : one.where.items()) figure.keys.push_back(key);
   }
@@ -1133,8 +1151,9 @@ Figure plot_figure(const PlotSpec& plot, const NameVariants& names) {
 std::vector<Figure> own_figures(std::span<const PlotSpec> plots, std::span<const ClaimSpec> claims,
                                 const NameVariants& names, const std::string& question) {
   nlohmann::ordered_map<std::string, std::vector<Figure>> figures;  // parts of each figure
+  const auto all = std::make_shared<const std::vector<PlotSpec>>(plots.begin(), plots.end());
   for (const PlotSpec& plot : plots) {
-    figures[figure_of(plot)].push_back(plot_figure(plot, names));
+    figures[figure_of(plot)].push_back(plot_figure(plot, names, all));
   }
   for (const ClaimSpec& claim : claims) {
     figures[figure_of(claim)].push_back(claim_figure(claim));

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
@@ -101,6 +102,32 @@ std::string repeated_column(const PlotSpec& plot);
 /// Whether the plot draws all cycles instead of a single cycle.
 bool draws_every_cycle(const PlotSpec& plot);
 
+/// The plots of a manifest; null: none.
+using Plots = std::shared_ptr<const std::vector<PlotSpec>>;
+
+/// A run that a plot draws.
+struct Selected {
+  const FrameRun* run;
+  /// Runs of the variant PlotSpec::minus from the same packing as `run`. Their mean is subtracted.
+  std::vector<const FrameRun*> partners = {};
+  std::vector<const CheckpointMeasures*> checkpoints = {};
+};
+
+struct Selection {
+  std::vector<Selected> drawn = {};
+  std::vector<const FrameRun*> subtracted = {};  ///< runs with the parameters PlotSpec::minus
+  std::vector<const FrameRun*> alone = {};  ///< left out, since no `subtracted` has their packing
+
+  std::vector<const FrameRun*> runs() const;  ///< of `drawn`
+};
+
+/// Selects the runs and checkpoints that the plot draws. With PlotSpec::minus, a checkpoint needs a
+/// partner at the same cycle.
+Selection selected_by(const PlotSpec& plot, std::span<const FrameRun> runs);
+
+/// The swept key over whose values a curve of these runs would average; "" if there is none.
+std::string averaged_by(const PlotSpec& plot, RunGroup runs);
+
 /// Returns readable names of variants. A variant is an object of keys and values.
 using NameVariants = std::function<std::map<nlohmann::json, std::string>(
     const std::vector<nlohmann::json>& variants)>;
@@ -109,7 +136,8 @@ using NameVariants = std::function<std::map<nlohmann::json, std::string>(
 /// ... with equal ranges. Runs are averaged in bins of phi if x is phi, at each cycle if x is
 /// another measure, and at one cycle if x is a parameter. A measure that is a curve is drawn at one
 /// cycle. `names` gives the titles of curves; without it a title has the form "fluid=still".
-Figure plot_figure(const PlotSpec& plot, const NameVariants& names = {});
+/// Colours and symbols that `others`, the plots of the same manifest, state also hold in this plot.
+Figure plot_figure(const PlotSpec& plot, const NameVariants& names = {}, const Plots& others = {});
 
 /// Words for a message: "2 variants have fluid=still" or "no variant has fluid=still".
 std::string variants_have(std::size_t variants, const nlohmann::json& where);

@@ -4,9 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <numeric>
 #include <set>
+#include <utility>
 
 #include "analysis/published.hpp"
+#include "provenance/json_text.hpp"
 
 namespace shearcell {
 namespace {
@@ -32,6 +35,13 @@ Rank rank_of(const json& variant, std::span<const json> variants,
   return {static_cast<std::size_t>(below), all.size()};
 }
 
+/// Whether the variant agrees with `where` in all keys that it has.
+bool may_have(const json& variant, const json& where) {
+  return std::ranges::all_of(where.items(), [&](const auto& stated) {
+    return !variant.contains(stated.key()) || is_within(variant[stated.key()], stated.value());
+  });
+}
+
 }  // namespace
 
 Look amplitude_look(double amplitude_rad, std::size_t k) {
@@ -44,7 +54,8 @@ Look amplitude_look(double amplitude_rad, std::size_t k) {
   return {safe_colours[colour % safe_colours.size()], curve_symbol(published ? place : k)};
 }
 
-Looks::Looks(const Frame& frame) : variants_(frame.variants) {
+Looks::Looks(const Frame& frame, std::vector<StatedLook> stated, std::vector<std::string> shared)
+    : variants_(frame.variants), stated_(std::move(stated)), shared_(std::move(shared)) {
   if (variants_.empty()) {
     for (const FrameRun& run : frame.runs) variants_.push_back(run.place.swept);
   }
@@ -61,29 +72,73 @@ Look Looks::of(RunGroup curve, const json& key) const {
     for (const auto& [name, value] : key.items()) keys.push_back(name);
   }
   const json& variant = one_variant ? swept : key;
-  const std::span all(keys);
-  Rank first = rank_of(variant, variants_, all.first(std::min<std::size_t>(1, all.size())));
-  Rank rest = rank_of(variant, variants_, all.subspan(std::min<std::size_t>(1, all.size())));
+  const std::span all(keys), of_colour = all.first(std::min<std::size_t>(1, all.size()));
+  std::vector<std::string> palette(safe_colours.begin(), safe_colours.end());
+  std::vector<json> free = variants_;  // variants without a stated colour
+  std::vector<std::string> in_panel = keys;
+  std::erase_if(in_panel, [&](const auto& name) { return std::ranges::count(shared_, name) > 0; });
+  StatedLook stated;
+  bool single = false;  // whether no other curve has the stated colour
+  for (const StatedLook& one : stated_) {
+    std::set<json> curves, colours;
+    for (const json& other : variants_) {
+      if (!may_have(other, one.where)) continue;
+      curves.insert(values_of(other, in_panel));
+      colours.insert(values_of(other, of_colour));
+    }
+    if (colours.size() > 1) continue;
+    if (!one.colour.empty()) {
+      std::erase(palette, one.colour);
+      std::erase_if(free, [&](const json& other) { return may_have(other, one.where); });
+    }
+    const bool of_curve = std::ranges::all_of(
+        curve, [&](const FrameRun* run) { return has_parameters(*run, one.where); });
+    const bool alone_in_panel = of_curve && curves.size() <= 1;
+    if (of_curve && stated.colour.empty() && !one.colour.empty()) {
+      stated.colour = one.colour;
+      single = alone_in_panel;
+    }
+    if (alone_in_panel && stated.point < 0) stated.point = one.point;
+  }
+  if (palette.empty()) palette.assign(safe_colours.begin(), safe_colours.end());
+  const bool is_free = std::ranges::any_of(
+      free, [&](const json& other) { return values_of(other, all) == values_of(variant, all); });
+  const std::span<const json> among = is_free ? free : variants_;
+  Rank first = rank_of(variant, among, of_colour);
+  Rank rest = rank_of(variant, among, all.subspan(of_colour.size()));
   // Colour and symbol change together if only one key varies, or if the keys have more values than
-  // there are colours or symbols. 7 colours and 10 symbols then give 70 combinations.
-  std::size_t dashes = rest.rank;
-  if (rest.count <= 1 || first.count > safe_colours.size() || rest.count > curve_symbols) {
-    first.rank = rest.rank = first.rank * std::max<std::size_t>(1, rest.count) + rest.rank;
-    dashes = first.rank / safe_colours.size();
+  // there are colours or symbols. When the pairs of colour and symbol would repeat, the symbols
+  // shift by one. 7 colours and 10 symbols then give 70 pairs, and dashes double this number.
+  std::size_t alone = rest.rank, pairs = 0;
+  if (rest.count <= 1 || first.count > palette.size() || rest.count > curve_symbols) {
+    const std::size_t rank = first.rank * std::max<std::size_t>(1, rest.count) + rest.rank;
+    first.rank = rank;
+    rest.rank = rank + rank / std::lcm(palette.size(), curve_symbols);
+    alone = rank / palette.size();
+    pairs = alone / curve_symbols;
   }
-  Look look = {safe_colours[first.rank % safe_colours.size()], curve_symbol(rest.rank),
-               dashes % 2 == 1 ? Join::dashes : Join::line};
-  const bool by_amplitude = !keys.empty() && keys.front() == "amplitude_rad";
-  const auto is_published = [](const json& one) {
-    const json amplitude = one.value("amplitude_rad", json());
-    return amplitude.is_number() &&
-           std::ranges::any_of(published_amplitudes, [&](const PublishedAmplitude& other) {
-             return std::abs(other.amplitude_rad - amplitude.get<double>()) < 1e-6;
-           });
+  const auto dashed = [](std::size_t k) { return k % 2 == 1 ? Join::dashes : Join::line; };
+  Look look = {palette[first.rank % palette.size()], curve_symbol(rest.rank), dashed(pairs),
+               dashed(alone)};
+  // "" if the amplitude has no published colour, or if this colour is stated for another variant.
+  const auto published_colour = [&](const json& one) -> std::string {
+    const json value = member_of(one, "amplitude_rad");
+    if (!value.is_number()) return "";
+    const auto amplitude = value.get<double>();
+    const std::string colour = amplitude_look(amplitude, 0).colour;
+    const bool published = std::abs(published_nearest(amplitude).amplitude_rad - amplitude) < 1e-6;
+    return published && std::ranges::count(palette, colour) > 0 ? colour : "";
   };
-  if (by_amplitude && std::ranges::all_of(variants_, is_published)) {
-    look.colour = amplitude_look(variant.at("amplitude_rad").get<double>(), 0).colour;
+  const bool by_amplitude = !keys.empty() && keys.front() == "amplitude_rad";
+  const bool all_published =
+      std::ranges::none_of(free, [&](const json& one) { return published_colour(one).empty(); });
+  if (const std::string colour = published_colour(variant);
+      by_amplitude && all_published && !colour.empty()) {
+    look.colour = colour;
   }
+  if (!stated.colour.empty()) look.colour = stated.colour;
+  if (single) look.join = look.alone = Join::line;
+  if (stated.point >= 0) look.point = stated.point;
   return look;
 }
 

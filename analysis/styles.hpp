@@ -36,7 +36,15 @@ inline constexpr std::size_t curve_symbols = 10;
 struct Look {
   std::string colour = {};  ///< "#rrggbb"
   int point = 0;            ///< like Series::point
-  Join join = Join::line;   ///< line style without symbols; dashes if the colour is used twice
+  Join join = Join::line;   ///< with symbols: dashes if colour and symbol are used twice
+  Join alone = Join::line;  ///< without symbols: dashes if the colour is used twice
+};
+
+/// A colour or symbol that a manifest states for the curves with the parameters `where`.
+struct StatedLook {
+  nlohmann::json where;
+  std::string colour = {};  ///< "": not stated
+  int point = -1;           ///< -1: not stated
 };
 
 /// Colour and symbol of a curve of one amplitude. For the amplitudes of the supplement, they are
@@ -45,18 +53,25 @@ Look amplitude_look(double amplitude_rad, std::size_t k);
 
 /// Chooses the colour and symbol (Look) of each variant from the keys that vary in the frame. The
 /// rank of the first key's value decides the colour. The rank of the other values decides the
-/// symbol. The amplitudes of the supplement have the colours of amplitude_look().
+/// symbol. The amplitudes of the supplement have the colours of amplitude_look(). Stated colours
+/// and symbols replace these, and no other variant has a stated colour.
 class Looks {
  public:
-  explicit Looks(const Frame& frame);
+  /// `shared`: keys in which the curves of one panel do not differ, for the rules on stated looks.
+  explicit Looks(const Frame& frame, std::vector<StatedLook> stated = {},
+                 std::vector<std::string> shared = {});
 
   /// Colour and symbol of a curve. If all runs of the curve belong to one variant, the swept values
   /// of this variant decide. Otherwise `key` decides: the values that all runs of the curve share.
+  /// A stated symbol is used if no other curve of the panel has the parameters of its entry. A
+  /// stated colour is also used if all curves with these parameters would have the same colour.
   Look of(RunGroup curve, const nlohmann::json& key) const;
 
  private:
   std::vector<nlohmann::json> variants_;
   std::vector<std::string> keys_;
+  std::vector<StatedLook> stated_;  ///< the first entry of a curve is used
+  std::vector<std::string> shared_;
 };
 
 }  // namespace shearcell

@@ -55,6 +55,7 @@ const Estimator rate_exponent = {.name = "rate_exponent",
                                  .of_run = true,
                                  .over_variants = true,
                                  .one_side = true,
+                                 .compares_variants = true,
                                  .decide = decide_exponent,
                                  .words = words_of_exponent};
 

@@ -56,6 +56,7 @@ const Estimator slope_against = {
     .of_run = true,
     .over_variants = true,
     .one_side = true,
+    .compares_variants = true,
     .decide = decide_slope,
     .words = words_of_slope};
 

@@ -48,6 +48,7 @@ Verdict decide_spread(const ClaimSpec& claim, const Claim& stated, RunGroup runs
                          "{:.3g} % confidence limit",
                          found->f, 50 * (1 + stated.level)));
   }
+  if (!estimate) add_note(note, "at least two variants, one of them with two values, are needed");
   return decide(stated, words_of_spread(claim), estimate,
                 with_number / std::max<std::size_t>(1, groups.size()), std::move(note),
                 std::move(entered), Counted::runs_per_variant);
@@ -61,6 +62,7 @@ const Estimator spread_of_variants = {
     .of_run = std::nullopt,
     .over_variants = true,
     .one_side = true,
+    .compares_variants = true,
     .decide = decide_spread,
     .words = words_of_spread};
 

@@ -71,6 +71,7 @@ const Estimator spread_ratio = {
     .of_run = true,
     .over_variants = true,
     .one_side = true,
+    .reference = "1",
     .decide = decide_ratio,
     .words = words_of_ratio};
 

@@ -234,7 +234,7 @@ void make_of_runs(const Store& store, const WantedFigure& wanted, const FigureOp
   std::ranges::for_each(runs, leave_out_unmeasured);
   made.lineage = lineage_of(made, plots_of(wanted, *frame.manifests), inputs_of(store, made, runs));
   if (figure.form == FigureForm::groups) {
-    require_told_apart(figure.name, runs, figure.keys,
+    require_told_apart(figure.name, pointers(runs), averaged_key(pointers(runs), figure.keys),
                        "make a separate experiment for each value, or define a plot "
                        "in the manifest (`plots`)");
   }

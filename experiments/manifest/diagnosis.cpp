@@ -13,6 +13,7 @@
 #include <tuple>
 #include <utility>
 
+#include "analysis/estimators.hpp"
 #include "analysis/expression.hpp"
 #include "analysis/figure.hpp"
 #include "analysis/plots.hpp"
@@ -452,10 +453,21 @@ string words_of_checkpoint(const string& where, std::uint64_t back) {
 }
 
 // Whether the run will have a checkpoint at a cycle from `first` to `end`, and another checkpoint
-// `back` cycles earlier. Tries the first cycle, the first multiple of `every_cycles`, and the last
-// cycle. If the first multiple does not fit, no later multiple fits.
-bool has_checkpoint(const FrameRun& run, std::uint64_t first, std::uint64_t end,
-                    std::uint64_t back) {
+// `back` cycles earlier. `wanted`: null, or a cycle, a list or a range that the cycle must match.
+// Tries the first cycle, the first multiple of `every_cycles`, and the last cycle. If the first
+// multiple does not fit, no later multiple fits.
+bool has_checkpoint(const FrameRun& run, std::uint64_t first, std::uint64_t end, std::uint64_t back,
+                    const json& wanted = nullptr) {
+  if (wanted.is_array()) {
+    return std::ranges::any_of(
+        wanted, [&](const json& one) { return has_checkpoint(run, first, end, back, one); });
+  }
+  const auto limit = [&](const char* key, std::uint64_t without) {
+    const json stated = wanted.is_object() ? member_of(wanted, key) : wanted;
+    return stated.is_number() ? stated.get<std::uint64_t>() : without;
+  };
+  first = std::max(first, limit("min", first));
+  end = std::min(end, limit("max", end));
   const std::uint64_t every = run.ask.checkpoint_every, last = run.ask.target_cycles;
   const std::uint64_t begin = std::max(first, back);
   const auto has = [&](std::uint64_t c) { return c <= last && (c % every == 0 || c == last); };
@@ -466,27 +478,34 @@ bool has_checkpoint(const FrameRun& run, std::uint64_t first, std::uint64_t end,
 }
 
 /// Why no run will have a value for the plot; "" if some run may have one.
-string lack_of(const PlotSpec& plot, const Scale& scale, std::span<const FrameRun> runs) {
+string lack_of(const PlotSpec& plot, const Scale& scale, RunGroup runs) {
   const auto [shortest, longest] = std::ranges::minmax(
-      std::views::transform(runs, [](const FrameRun& run) { return run.ask.target_cycles; }));
+      std::views::transform(runs, [](const FrameRun* run) { return run->ask.target_cycles; }));
   std::array<std::uint64_t, 2> cycles = {0, longest};
+  const json wanted = member_of(plot.where, "cycle");
   string where;
   if (plot.cycles) {
     cycles = *plot.cycles;
     where = format(" in cycles {} to {}", cycles[0], cycles[1]);
   } else if (!draws_every_cycle(plot) && !is_of_run(plot.y)) {
     if (!plot.cycle && scale.until.until) return "";  // `until` decides the last cycle
-    cycles.fill(plot.cycle.value_or(shortest));
-    where = format(" at cycle {}", cycles[0]);
+    cycles[1] = plot.cycle.value_or(shortest);
+    // Without `at_cycle`, the plot draws the last cycle that `where` selects.
+    if (plot.cycle || wanted.is_null()) {
+      cycles[0] = cycles[1];
+      where = format(" at cycle {}", cycles[0]);
+    }
   }
   if (cycles[1] > longest) {
     return format("it needs cycle {}, but the last cycle of the runs is {}.", cycles[1], longest);
   }
   for (const string& measure : {plot.y, plot.x}) {
     const std::uint64_t back = cycles_back(measure);
-    const bool any = std::ranges::any_of(
-        runs, [&](const FrameRun& run) { return has_checkpoint(run, cycles[0], cycles[1], back); });
+    const bool any = std::ranges::any_of(runs, [&](const FrameRun* run) {
+      return has_checkpoint(*run, cycles[0], cycles[1], back, wanted);
+    });
     if (any) continue;
+    if (!wanted.is_null()) where += " with " + words_of({{"cycle", wanted}});
     return format(
         "no run has {}, so {} has no value. Record more checkpoints (`every_cycles`) or more "
         "cycles.",
@@ -516,14 +535,10 @@ string lack_of(const ClaimSpec& claim, const FrameRun& run) {
 
 /// A message that lists the variants whose packings differ from those of the subtracted variant
 /// (`minus`); "" if all variants have the same packings.
-string lack_of_partner(const PlotSpec& plot, std::span<const FrameRun> runs) {
-  const std::vector<const FrameRun*> others = runs_with(plot.minus, runs);
-  if (plot.minus.empty() || others.size() != 1) return "";
+string lack_of_partner(const PlotSpec& plot, const Selection& selection) {
+  if (selection.alone.empty() || selection.subtracted.size() != 1) return "";
   std::vector<string> alone;
-  for (const FrameRun& run : runs) {
-    if (run.packing != others.front()->packing) alone.push_back(run.place.variant);
-  }
-  if (alone.empty()) return "";
+  for (const FrameRun* run : selection.alone) alone.push_back(run->place.variant);
   return format(
       "{} {} other packings than {}, so the plot omits {}. Under `settle`, set the parameters "
       "that all packings must share.",
@@ -532,36 +547,56 @@ string lack_of_partner(const PlotSpec& plot, std::span<const FrameRun> runs) {
 }
 
 /// Number of curves of the plot that the entry of `series` matches.
-std::size_t curves_of(const SeriesSpec& series, const PlotSpec& plot,
-                      std::span<const FrameRun> runs) {
+std::size_t curves_of(const SeriesSpec& series, const PlotSpec& plot, RunGroup runs) {
   std::set<json> curves;
-  for (const FrameRun& run : runs) {
-    if (!has_parameters(run, series.where)) continue;
-    json curve = run.place.swept;
+  for (const FrameRun* run : runs) {
+    if (!has_parameters(*run, series.where)) continue;
+    json curve = run->place.swept;
     for (const string& name : names_in(plot.x)) curve.erase(name);
     curve.erase(plot.panel);
-    if (!plot.by.empty()) curve = parameter_of(run, plot.by);
+    if (!plot.by.empty()) curve = parameter_of(*run, plot.by);
     curves.insert(std::move(curve));
   }
   return curves.size();
 }
 
+/// Why `at_cycle` has no effect on the plot; "" if it has an effect or is not given.
+string unused_cycle(const PlotSpec& plot) {
+  if (plot.cycle && is_of_run(plot.y)) {
+    return format("{} has one value for each run, so at_cycle has no effect. Leave at_cycle out.",
+                  plot.y);
+  }
+  return plot.cycle && draws_every_cycle(plot)
+             ? "at_cycle has no effect, because the plot draws every cycle. Remove at_cycle."
+             : "";
+}
+
 std::vector<string> problems_of(const PlotSpec& plot, const ScaleRuns& here,
                                 std::span<const ScaleRuns> all) {
-  const auto& [scale, seeds, runs] = here;
-  std::vector<string> found;
-  std::vector<string> keys = names_in(plot.x);
-  keys.insert(keys.end(), {plot.by, plot.panel});
-  const bool averages = !plot.by.empty() && !is_measured_of_run(plot.x);
-  const string key = averages ? averaged_key(runs, keys) : "";
-  if (!key.empty()) {
+  const Scale& scale = here.scale;
+  const Selection selection = selected_by(plot, here.runs);
+  const std::vector<const FrameRun*> runs = selection.runs();
+  std::vector<string> found = {problem_of_minus(plot, count_variants(selection.subtracted)),
+                               lack_of_partner(plot, selection)};
+  if (runs.empty()) {
+    json where = plot.where;
+    where.erase("cycle");
+    const bool any = !runs_with(where, here.runs).empty();
+    if (selection.alone.empty() && found[0].empty()) {
+      found.push_back(
+          any ? format("only {} is selected, and `minus` subtracts it, so nothing is drawn. Change "
+                       "`where` or `minus`.",
+                       words_of(plot.minus))
+              : format("{}, so nothing is drawn. Change `where`.", variants_have(0, where)));
+    }
+    return found;
+  }
+  if (const string key = averaged_by(plot, runs); !key.empty()) {
     found.push_back(
         format("the plot would average over the values of {}. Leave out `by` to draw one curve for "
                "each variant.",
                key));
   }
-  found.push_back(problem_of_minus(plot, count_variants(runs_with(plot.minus, runs))));
-  found.push_back(lack_of_partner(plot, runs));
   const bool phases = !scale.checkpoints.phases.empty();
   if (plot.x == "shear_strain" && (!plot.cycles || !phases)) {
     found.push_back(format("shear_strain is 0 at whole cycles. Set {}.",
@@ -573,26 +608,21 @@ std::vector<string> problems_of(const PlotSpec& plot, const ScaleRuns& here,
     if (plot.listed) break;  // checked only in the manifest that defines the plot
     if (!one.column.empty()) continue;
     const std::size_t curves = curves_of(one, plot, runs);
-    const bool of_another = std::ranges::any_of(
-        all, [&](const ScaleRuns& other) { return curves_of(one, plot, other.runs) > 0; });
     if (curves > 1) {
       found.push_back(format(
-          "the style for {} matches {} curves, so it is not used. Add keys that choose one curve.",
+          "the style for {} matches {} curves, but a style is for one curve. Add keys that choose "
+          "one curve.",
           words_of(one.where), curves));
-    } else if (curves == 0 && !of_another) {
+    } else if (curves == 0 && std::ranges::none_of(all, [&](const ScaleRuns& other) {
+                 return curves_of(one, plot, selected_by(plot, other.runs).runs()) > 0;
+               })) {
       found.push_back(
-          format("the style for {} matches no curve at any scale. Use only values that the "
-                 "experiment sweeps.",
+          format("the style for {} matches no curve at any scale. Use only values of curves that "
+                 "the plot draws.",
                  words_of(one.where)));
     }
   }
-  if (plot.cycle && is_of_run(plot.y)) {
-    found.push_back(format(
-        "{} has one value for each run, so at_cycle has no effect. Leave at_cycle out.", plot.y));
-  } else if (plot.cycle && draws_every_cycle(plot)) {
-    found.emplace_back(
-        "at_cycle has no effect, because the plot draws every cycle. Remove at_cycle.");
-  }
+  found.push_back(unused_cycle(plot));
   found.push_back(lack_of(plot, scale, runs));
   return found;
 }
@@ -611,6 +641,10 @@ ClaimProblems problems_of(const ClaimSpec& claim, const ScaleRuns& here) {
       string lack = lack_of(claim, *run);
       if (!lack.empty() && found.lacks.empty()) found.lacks.push_back(std::move(lack));
     }
+  }
+  if (estimator_of(claim).compares_variants && count_variants(sides.runs[0]) == 1) {
+    found.lacks.push_back(format("{} compares variants, but the claim selects only one variant.",
+                                 estimator_of(claim).name));
   }
   if (here.seeds < least_runs) {
     found.lacks.push_back(
@@ -702,7 +736,7 @@ void warn_of_figures(const Manifest& manifest, const ScaleRuns& here,
   for (const string& name : manifest.figures) {
     const Figure& figure = *find_figure(name);
     if (figure.form != FigureForm::groups) continue;
-    const string key = averaged_key(here.runs, figure.keys);
+    const string key = averaged_key(pointers(here.runs), figure.keys);
     if (key.empty()) continue;
     warnings.push_back(
         format("{}: figure {} would average over the values of {}. Use one experiment for each "
@@ -814,6 +848,34 @@ void check_variants(const Manifest& manifest) {
   problems.raise();  // check_primary() needs valid variants
   check_primary(manifest, scales, problems);
   problems.raise();
+}
+
+std::vector<string> warnings_of(const Manifest& manifest) {
+  std::vector<string> warnings;
+  const auto check = [&](const auto& place, const string& name,
+                         std::initializer_list<json> selections, std::vector<string> problems) {
+    for (const json& where : selections) {
+      for (const json& one : member_of(where, "experiment")) {
+        if (std::ranges::count(manifest.of, one.get<string>()) > 0) continue;
+        problems.push_back(format("`of` does not list the experiment {}. Write one of {}.",
+                                  printable(one.get<string>()), fmt::join(manifest.of, ", ")));
+      }
+    }
+    for (const string& problem : problems) {
+      if (problem.empty()) continue;
+      warnings.push_back(
+          format("{}:{}:{}: {}: {}", manifest.file, place.at.line, place.at.column, name, problem));
+    }
+  };
+  for (const Placed<PlotSpec>& plot : manifest.plots) {
+    check(plot, "plot " + plot.name, {plot.where, plot.minus}, {unused_cycle(plot)});
+    for (const SeriesSpec& one : plot.series) check(plot, "plot " + plot.name, {one.where}, {});
+  }
+  for (const Placed<ClaimSpec>& claim : manifest.claims) {
+    check(claim, "claim " + claim.id, {claim.where, claim.between[0], claim.between[1]},
+          problems_of_sides(claim, {}, false));
+  }
+  return warnings;
 }
 
 std::vector<string> warnings_of(const Manifest& manifest, const Scale& scale,

@@ -20,6 +20,10 @@ void check_variants(const Manifest& manifest);
 /// Why LAMMPS cannot compute these runs; "" if it can, or if LAMMPS is not the engine.
 std::string unfit_for_lammps(const Parameters& parameters, const Checkpoints& checkpoints);
 
+/// Returns warnings about the plots and claims of a manifest with the key `of`: those that need no
+/// runs, because other manifests define the runs.
+std::vector<std::string> warnings_of(const Manifest& manifest);
+
 /// Returns warnings about the variants in `planned`, one line each. Reasons: a parameter makes
 /// settling fail, is outside the advised range, or has no effect on any variant; a figure, plot or
 /// claim will have no data; an entry of `primary` is not the id of a claim.

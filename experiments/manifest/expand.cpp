@@ -141,7 +141,8 @@ std::vector<FrameRun> planned_runs(const Manifest& manifest, const Scale& scale,
     FrameRun& run = runs.emplace_back(FrameRun{planned});
     run.name = names.at(variant.swept);
     // If a manifest has `start`, variants may share a packing, and its id is not known yet.
-    if (!scale.start.is_recorded() && scale.start.file.empty()) run.packing = planned.prepare->id;
+    const bool known = !scale.start.is_recorded() && scale.start.file.empty();
+    run.packing = known ? planned.prepare->id : "start";
     for (const Field& field : schema()) run.parameters[field.name] = field.get(planned.parameters);
     if (planned.parameters.protocol == ProtocolKind::stiffen) run.ask.checkpoint_every = 1;
   }
@@ -149,7 +150,7 @@ std::vector<FrameRun> planned_runs(const Manifest& manifest, const Scale& scale,
 }
 
 Plan expand(const Manifest& manifest, const ExpandOptions& options) {
-  if (!manifest.of.empty()) return {manifest, "", {}, {}, {}};  // uses other experiments' runs
+  if (!manifest.of.empty()) return {manifest, "", {}, {}, warnings_of(manifest)};
   Scale scale = choose_scale(manifest, options.scale);
   if (options.cycles) {
     check_option(manifest, "cycles", *options.cycles, *find_field("cycles"));

@@ -8,7 +8,9 @@
 #include <cmath>
 #include <functional>
 #include <optional>
+#include <set>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "analysis/error.hpp"
@@ -41,8 +43,8 @@ std::vector<FrameRun> two_parameters(const std::vector<double>& drags = {0.001, 
 
 /// The number of different styles.
 std::size_t looks(const Table& table) {
-  std::set<std::pair<std::string, int>> different;
-  for (const Series& one : table.chart.series) different.emplace(one.colour, one.point);
+  std::set<std::tuple<std::string, int, Join>> different;
+  for (const Series& one : table.chart.series) different.emplace(one.colour, one.point, one.join);
   return different.size();
 }
 
@@ -171,6 +173,17 @@ TEST(Curves, TheKeyCountsRunsAtEachParameterAndOfEachCurve) {
   const std::string variant = runs[0].place.variant;
   std::erase_if(runs, [&](const FrameRun& run) { return run.place.variant != variant; });
   EXPECT_EQ(key(profile), Key{"1 of 2 runs"}) << "a single curve has no other title";
+}
+
+TEST(Curves, AreDashedWhereColoursAndSymbolsRepeat) {
+  std::vector<double> drags;
+  for (std::size_t k = 1; k <= 140; ++k) drags.push_back(0.001 * static_cast<double>(k));
+  std::vector<FrameRun> runs = two_parameters(drags);
+  std::erase_if(runs, [](const FrameRun& run) { return run.place.swept["fluid"] == "cell"; });
+  const Table table = s2(runs)[0];
+  EXPECT_EQ(looks(table), 140U);
+  EXPECT_EQ(std::ranges::count(table.chart.series, Join::line, &Series::join), 70);
+  EXPECT_TRUE(table.chart.note.empty()) << table.chart.note;
 }
 
 TEST(Curves, HaveStylesOfTheirOwnWhereManyValuesVary) {

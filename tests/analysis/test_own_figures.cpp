@@ -6,6 +6,7 @@
 
 #include <clocale>
 #include <cmath>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -198,6 +199,65 @@ TEST(OwnPlot, DrawsSeriesAsStated) {
   traces.by.clear();
   traces.series = {{.where = {{"amplitude_rad", 0.08}, {"period_s", 2.0}}, .colour = "purple"}};
   EXPECT_EQ(drawing_of(traces).chart.series[0].colour, "#cc79a7");
+}
+
+TEST(OwnPlot, HoldsTheStatedStylesOfOtherPlots) {
+  const std::vector<PlotSpec> plots = {
+      {.name = "stated",
+       .y = "phi",
+       .x = "1/period_s",
+       .by = "amplitude_rad",
+       .series = {{.where = {{"amplitude_rad", 0.02}}, .colour = "blue", .marker = "open_circle"},
+                  {.where = {{"amplitude_rad", 0.08}}, .colour = "vermilion"}}},
+      {.name = "panels", .y = "phi", .by = "amplitude_rad", .panel = "period_s"},
+      {.name = "variants", .y = "phi"},
+      {.name = "other",
+       .y = "phi",
+       .x = "period_s",
+       .by = "amplitude_rad",
+       .series = {{.where = {{"amplitude_rad", 0.04}}, .colour = "blue"}}}};
+  const std::vector<Figure> figures = own_figures(plots, {}, {});
+  const auto colours = [&](std::size_t k, std::size_t panel) {
+    const FigureResult made = figures[k].make(runs_of_sweep());
+    std::map<std::string, std::string> by_title;
+    for (const Series& one : made.tables.at(panel).chart.series) {
+      by_title[plain_text(one.title)] = one.colour;
+      const bool circle = one.colour == "#0072b2" && one.point == 6;
+      EXPECT_EQ(circle, k < 2 && has(plain_text(one.title), "0.02")) << k;
+    }
+    return by_title;
+  };
+  const std::map<std::string, std::string> stated = {{"amplitude_rad=0.02", "#0072b2"},
+                                                     {"amplitude_rad=0.04", "#009e73"},
+                                                     {"amplitude_rad=0.08", "#d55e00"}};
+  EXPECT_EQ(colours(0, 0), stated);
+  EXPECT_EQ(colours(1, 0), stated);
+  EXPECT_EQ(colours(1, 1), stated);
+  for (const auto& [title, colour] : colours(2, 0)) {
+    for (const char* amplitude : {"0.02", "0.04", "0.08"}) {
+      if (!has(title, fmt::format("A={} ", amplitude))) continue;
+      EXPECT_EQ(colour, stated.at(fmt::format("amplitude_rad={}", amplitude)))
+          << "the colour of both periods, with two symbols";
+    }
+  }
+  EXPECT_EQ(colours(3, 0).at("amplitude_rad=0.04"), "#0072b2") << "states another one";
+  EXPECT_EQ(colours(3, 0).at("amplitude_rad=0.08"), "#d55e00");
+  EXPECT_NE(colours(3, 0).at("amplitude_rad=0.02"), "#0072b2");
+}
+
+TEST(OwnPlot, AveragesOnlyOverTheRunsThatItSelects) {
+  const Table table =
+      drawing_of({.name = "own", .y = "phi", .where = {{"period_s", 2.0}}, .by = "amplitude_rad"});
+  EXPECT_EQ(table.chart.series.size(), 3U);
+}
+
+TEST(OwnPlot, WritesListsAndRangesInWords) {
+  const nlohmann::json between = {{"min", 0.05}, {"max", 0.1}}, fluids = {"still", "cell"};
+  EXPECT_EQ(words_of({{"amplitude_rad", between}, {"fluid", fluids}}),
+            "amplitude_rad 0.05 to 0.1, fluid=still or cell");
+  EXPECT_EQ(words_of({{"amplitude_rad", {{"min", 0.06}}}, {"grains", {{"max", 600}}}}),
+            "amplitude_rad >= 0.06, grains <= 600");
+  EXPECT_EQ(words_of({{"fluid", "still"}, {"grains", 600}}), "fluid=still, grains=600");
 }
 
 TEST(OwnPlot, ShowsPublishedNumbers) {
@@ -620,6 +680,22 @@ TEST(OwnClaim, WithoutAMarginTakesThePublishedNumberAsABound) {
             "own: phi at cycle 0 is lower than published, 0.61 (S C), for fluid=cell");
   claim.is = Relation::higher;
   EXPECT_EQ(verdict_of(claim).ruling, Ruling::refuted);
+}
+
+TEST(OwnClaim, OfOneSideSaysWhatItComparesWith) {
+  ClaimSpec claim = kOfFluids;
+  claim.compare = "phi";
+  claim.cycles = {{2, 2}};
+  claim.estimator = "spread_of_variants";
+  const Verdict alone = verdict_of(claim);
+  EXPECT_EQ(alone.claim,
+            "own: standard deviation between variants of phi at cycle 2 is within 1 of 0, for "
+            "fluid=cell");
+  EXPECT_TRUE(has(alone.note, "at least two variants")) << alone.note;
+  claim.between[0] = nlohmann::json::object();
+  claim.is = Relation::higher;
+  EXPECT_TRUE(verdict_of(claim).claim.ends_with(" is higher by more than 1 than 0"));
+  EXPECT_FALSE(has(verdict_of(claim).note, "at least two variants"));
 }
 
 TEST(OwnClaim, CountsTheRunsThatCrystallizeDuringItsCycles) {

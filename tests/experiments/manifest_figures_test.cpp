@@ -146,6 +146,77 @@ TEST(FigureWarnings, OfASeriesThatFitsSeveralCurves) {
             Strings{});
 }
 
+// As `figures` does, a plan looks only at the runs that `where` selects.
+TEST(FigureWarnings, OfTheRunsThatThePlotSelects) {
+  const auto found = [](const std::string& own, const std::string& more = "") {
+    return plan_of("cycles: 4",
+                   "sweep: {grid: {fluid: [still, cell], amplitude_rad: [0.05, 0.1]}}\n" + more +
+                       plot("y: phi, " + own))
+        .warnings;
+  };
+  const std::string still = "series: {\"fluid=still,amplitude_rad=0.1\": {colour: black}}, ";
+  for (const std::string& good :
+       {std::string("by: amplitude_rad, where: {fluid: still}"),
+        std::string("minus: {fluid: still, amplitude_rad: 0.05}, where: {amplitude_rad: 0.05}"),
+        still + "where: {fluid: still}", std::string("where: {cycle: {min: 4}}"),
+        std::string("where: {cycle: [3, 9]}"),
+        std::string("x: amplitude_rad, where: {cycle: {max: 2}}")}) {
+    EXPECT_EQ(found(good), Strings{}) << good;
+  }
+  for (const auto& [bad, says] :
+       {std::pair{std::string("where: {amplitude_rad: 0.07}"),
+                  "no variant has amplitude_rad=0.07, so nothing is drawn"},
+        {"where: {amplitude_rad: {min: 0.2, max: 0.1}}",
+         "no variant has amplitude_rad 0.2 to 0.1, so nothing is drawn"},
+        {"where: {cycle: {min: 9}}", "no run has a checkpoint with cycle >= 9, so phi"},
+        {"x: amplitude_rad, at_cycle: 4, where: {cycle: {max: 2}}",
+         "no run has a checkpoint at cycle 4 with cycle <= 2, so phi"},
+        {"minus: {fluid: still, amplitude_rad: 0.05}, where: {fluid: still, amplitude_rad: 0.05}",
+         "`minus` subtracts it, so nothing is drawn"},
+        {still + "where: {fluid: cell}", "matches no curve at any scale"}}) {
+    const Strings one = found(bad);
+    ASSERT_EQ(one.size(), 1U) << bad;
+    EXPECT_TRUE(has(one[0], says)) << one[0];
+  }
+}
+
+TEST(FigureWarnings, OfAClaimThatSelectsNoVariant) {
+  const Strings found = warnings(4, claim("compare: phi, at_cycle: 4, where: {walls: smooth}"));
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_TRUE(has(found[0], "no variant has fluid=still, walls=smooth; `between` must select"));
+}
+
+TEST(FigureWarnings, OfASpreadOfOneVariant) {
+  const auto found = [](const std::string& more) {
+    return warnings(4,
+                    "claims: [{name: own, margin: 1, compare: phi, at_cycle: 4, "
+                    "estimator: spread_of_variants" +
+                        more + "}]\n");
+  };
+  EXPECT_EQ(found(""), Strings{});
+  const Strings one = found(", where: {fluid: still}");
+  ASSERT_EQ(one.size(), 1U);
+  EXPECT_TRUE(has(one[0], "spread_of_variants compares variants, but the claim selects only one"));
+}
+
+TEST(FigureWarnings, OfAManifestThatUsesOtherExperiments) {
+  const auto found = [](const std::string& own) {
+    return expand(parse_manifest("experiment: joint\nof: [a, b]\n" + own, "test.yaml")).warnings;
+  };
+  EXPECT_EQ(found(plot("y: phi, where: {experiment: [a, b]}")), Strings{});
+  for (const auto& [bad, says] :
+       {std::pair{plot("y: phi, where: {experiment: [a, c]}"),
+                  "plot own: `of` does not list the experiment c. Write one of a, b."},
+        {plot("y: phi, at_cycle: 2"), "plot own: at_cycle has no effect"},
+        {std::string("claims: [{name: own, margin: 1, compare: phi, at_cycle: 1, "
+                     "between: [{fluid: still}, {fluid: still}]}]\n"),
+         "claim own: both sides of `between` are the same"}}) {
+    const Strings one = found(bad);
+    ASSERT_EQ(one.size(), 1U) << bad;
+    EXPECT_TRUE(has(one[0], says)) << one[0];
+  }
+}
+
 TEST(FigureWarnings, OfASeriesThatFitsNoCurve) {
   const auto found = [](const std::string& series) {
     return plan_of("cycles: 4", "sweep: {grid: {amplitude_rad: [0.05, 0.1]}}\n" +
