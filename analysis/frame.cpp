@@ -53,8 +53,8 @@ bool has_parameters(const FrameRun& run, const nlohmann::json& where) {
   });
 }
 
-std::vector<const FrameRun*> runs_with(const nlohmann::json& where,
-                                       std::span<const FrameRun> runs) {
+std::vector<const FrameRun*> all_runs_with(const nlohmann::json& where,
+                                           std::span<const FrameRun> runs) {
   std::vector<const FrameRun*> found;
   std::map<std::string_view, std::string_view> experiments;  // by stage id: the first experiment
   for (const FrameRun& run : runs) {
@@ -63,6 +63,12 @@ std::vector<const FrameRun*> runs_with(const nlohmann::json& where,
     const auto [first, fresh] = experiments.try_emplace(run.stage.id, experiment);
     if (fresh || first->second == experiment) found.push_back(&run);
   }
+  return found;
+}
+
+std::vector<const FrameRun*> runs_with(const nlohmann::json& where,
+                                       std::span<const FrameRun> runs) {
+  const std::vector<const FrameRun*> found = all_runs_with(where, runs);
   std::vector<const FrameRun*> as_stated = found;
   std::erase_if(as_stated, [](const FrameRun* run) { return run->place.swept.contains("engine"); });
   return count_variants(found) > 1 && count_variants(as_stated) == 1 ? as_stated : found;

@@ -115,8 +115,11 @@ const CheckpointMeasures* checkpoint_at(const FrameRun& run, double cycle);
 /// `max` or both. The relative tolerance of numbers is 1e-6, since a manifest may round them.
 bool has_parameters(const FrameRun& run, const nlohmann::json& where);
 /// The runs whose parameters match `where`. If several experiments share a matching run, only the
-/// run of the first of them is returned. Runs that `run --engine` added are left out if the other
-/// matching runs belong to only one variant.
+/// run of the first of them is returned.
+std::vector<const FrameRun*> all_runs_with(const nlohmann::json& where,
+                                           std::span<const FrameRun> runs);
+/// As all_runs_with(), but runs that `run --engine` added are left out if the other matching runs
+/// belong to only one variant.
 std::vector<const FrameRun*> runs_with(const nlohmann::json& where, std::span<const FrameRun> runs);
 
 /// Whether a value matches `wanted`, which is a value, a list of values or a range.

@@ -81,15 +81,14 @@ Selection selected_by(const PlotSpec& plot, std::span<const FrameRun> runs) {
   if (!plot.minus.empty()) selection.subtracted = runs_with(plot.minus, runs);
   const PackingGroups packings = by_packing(selection.subtracted);
   const NumberColumn y(plot.y);
-  for (const FrameRun& run : runs) {
-    const bool subtracted = std::ranges::count(selection.subtracted, &run) > 0;
-    if (subtracted || !has_parameters(run, of_runs)) continue;
-    const auto same = packings.find(packing_of(run));
+  for (const FrameRun* run : all_runs_with(of_runs, runs)) {
+    if (std::ranges::count(selection.subtracted, run) > 0) continue;
+    const auto same = packings.find(packing_of(*run));
     if (!plot.minus.empty() && same == packings.end()) {
-      selection.alone.push_back(&run);
+      selection.alone.push_back(run);
       continue;
     }
-    Selected& one = selection.drawn.emplace_back(Selected{&run});
+    Selected& one = selection.drawn.emplace_back(Selected{run});
     if (same != packings.end()) one.partners = same->second;
     const auto has_partner = [&](const CheckpointMeasures& checkpoint) {
       return std::ranges::any_of(one.partners, [&](const FrameRun* partner) {
@@ -97,7 +96,7 @@ Selection selected_by(const PlotSpec& plot, std::span<const FrameRun> runs) {
         return other != nullptr && std::isfinite(y(*partner, other));
       });
     };
-    for (const CheckpointMeasures& checkpoint : run.checkpoints) {
+    for (const CheckpointMeasures& checkpoint : run->checkpoints) {
       const bool wanted =
           !plot.where.contains("cycle") || is_within(checkpoint.cycle, plot.where.at("cycle"));
       const bool alone = !plot.minus.empty() && !is_of_run(plot.y) && !has_partner(checkpoint);

@@ -193,7 +193,7 @@ void add_experiment(FrameRun& run) {
 }
 
 /// Puts the runs of several experiments in the order of `experiments`. A run that they share occurs
-/// once for each of them (see runs_with()). Adds a note on each experiment without runs.
+/// once for each of them (see all_runs_with()). Adds a note on each experiment without runs.
 void join(const std::vector<std::string>& experiments, CollectedRuns& collected) {
   std::vector<FrameRun> joined;
   for (const std::string& experiment : experiments) {
@@ -415,7 +415,7 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
       if (all_seeds) add_planned(manifest, collected);
     }
     if (!wanted.figure.of.empty()) join(wanted.figure.of, collected);
-    for (const FrameRun* run : runs_with(nlohmann::json::object(), collected.runs)) {
+    for (const FrameRun* run : all_runs_with(nlohmann::json::object(), collected.runs)) {
       collected.variants.push_back(run->place.swept);
     }
     std::erase_if(collected.runs, [&](const FrameRun& run) {
