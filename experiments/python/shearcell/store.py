@@ -122,16 +122,17 @@ class Store:
         checkpoint; needs pandas.
 
         If the function returns a number, its column has the name of the key, or of the function if there is no
-        key. If it returns a mapping or a pandas Series, each of its names is a column. Where the file of the checkpoint is
-        pruned, the result is missing.
+        key. If it returns a mapping or a pandas Series, each of its names is a column. Where the file of the
+        checkpoint is pruned, the result is missing.
 
         With a key, results are kept beside the store, in PATH.measures/KEY.json: a checkpoint is
         computed once, and its results stay when its file is pruned. The key is your promise that
         the function is always the same and depends on the checkpoint alone: after a change use
         another key or fresh=True. A hash of the function is kept beside its results, and a warning
-        says if it has changed since: its code, its defaults, and the values, functions, classes and modules that
-        it reads. Functions and classes of Python and of installed packages are compared by name, files that
-        it opens are not compared, and nothing is compared after a change of Python's version. Results of another build of the program are computed again.
+        says if it has changed since: its code, its defaults, and the values, functions, classes and modules
+        that it reads. Functions and classes of Python and of installed packages are compared by name, files
+        that the function opens are not compared, and nothing is compared after a change of Python's version.
+        Results of another build of the program are computed again.
         Results that are not finite are not kept: they may need an earlier checkpoint, whose file may be
         restored.
 
