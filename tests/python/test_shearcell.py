@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The Python package against the program, on a small store: python3 test_shearcell.py PROGRAM SOURCE"""
+import contextlib
 import csv
 import functools
 import hashlib
@@ -17,6 +18,7 @@ import subprocess
 import sys
 import tempfile
 import time
+import types
 import unittest
 import warnings
 
@@ -38,6 +40,7 @@ except ImportError as missing:
 import shearcell
 from shearcell.checkpoint import GRAIN_MEASURES
 from shearcell import ShearcellError, Store
+from shearcell.store import _text_of
 
 calls = 0
 
@@ -506,25 +509,77 @@ class Package(unittest.TestCase):
         self.assertEqual({p.name for p in pathlib.Path().iterdir()},
                          {"asked.yaml", "program", "shearcell-store"}, "a file was left behind")
 
+    def test_plan_takes_the_arguments_of_run(self):
+        self.inside("planned")
+        with self.assertWarnsRegex(UserWarning, "^manifest: claim same: a verdict needs at least 3 seeds"):
+            planned = shearcell.plan(self.QUESTION, None, "store", 3, threads=2, mpi=2, keep_every=5, quiet=True)
+        self.assertEqual([line[:22] for line in planned.attrs["warnings"] if "claim" in line], ["manifest: claim same: "])
+        with self.assertRaisesRegex(TypeError, "help"):
+            shearcell.plan(self.QUESTION, help=True)
+
+    def test_a_text_may_have_one_line(self):
+        self.inside("lines")
+        for text in ("{experiment: asked, base: {grains: 150}}", json.dumps(self.QUESTION), '{"experiment":"asked"}'):
+            self.assertEqual(set(shearcell.plan(text)["experiment"]), {"asked"}, text)
+        with self.assertRaisesRegex(ShearcellError, "(?m)^manifest:1:2: exp: is an unknown key"):
+            shearcell.plan("{exp: asked}")
+        for nothing, shown in (("", "not ''"), (b"experiment: asked", "not b'exp"), ([], "this list is empty"), (5, "not 5")):
+            with self.assertRaisesRegex(TypeError, f"a manifest is a path, a text or a dict.*{shown}"):
+                shearcell.plan(nothing)
+
+    def test_numbers_of_a_dict_are_finite_and_whole_if_they_can_be(self):
+        self.inside("numbers")
+        base = self.QUESTION["base"]
+        planned = shearcell.plan({**self.QUESTION, "base": {**base, "grains": np.float64(150), "amplitude_rad": 0.125}},
+                                 cycles=3.0, seeds=np.float32(2))
+        self.assertEqual((set(planned["N"]), set(planned["seed"])), ({150}, {1, 2}))
+        self.assertEqual(set(planned[planned["stage"] == "shear"]["cycles"]), {3})
+        for value, key in (({**base, "cycles": np.nan}, "base.cycles: nan"), (np.array([1, np.inf]), r"base\[1\]: inf"),
+                           ({"grains": object()}, "base.grains: <object")):
+            with self.assertRaisesRegex((ValueError, TypeError), f"^{key}"):
+                shearcell.plan({**self.QUESTION, "base": value})
+
+    def test_paths_begin_at_home_or_in_the_working_directory(self):
+        self.inside("paths")
+        home = os.environ.get("HOME")
+        self.addCleanup(lambda: os.environ.pop("HOME") if home is None else os.environ.update(HOME=home))
+        os.environ["HOME"] = str(self.folder / "paths")
+        pathlib.Path("asked.yaml").write_text(json.dumps(self.QUESTION))
+        self.assertEqual(len(shearcell.plan("~/asked.yaml", store="~/store")), 3)
+        os.symlink(self.path, "drag")
+        store = Store("~/drag")
+        self.assertEqual(store.report("~/page.html"), pathlib.Path("page.html").absolute())
+        with self.assertRaisesRegex(ShearcellError, "this is a folder.*with out=$"):
+            store.report("~")
+        self.assertTrue(pathlib.Path("page.html").is_file())
+        with self.assertRaisesRegex(ShearcellError, "^packing.xyz: there is no such file"):
+            shearcell.plan({**self.QUESTION, "start": {"file": "packing.xyz"}})
+
     def test_errors_of_a_run_have_a_sentence_and_a_code(self):
         self.inside("wrong")
         base = self.QUESTION["base"]
         for manifest, how, code, sentence in (
-                ({**self.QUESTION, "sede": 1}, {}, 2, r"^manifest:\d+.*sede.*Did you mean seeds"),
-                ({**self.QUESTION, "base": {**base, "grains": -1}}, {}, 2, r"^manifest:\d+.*grains"),
+                ({**self.QUESTION, "sede": 1}, {}, 2, "^manifest: sede: .*Did you mean seeds"),
+                ({**self.QUESTION, "base": {**base, "grains": -1}}, {}, 2, "^manifest: base.grains: "),
                 ("nowhere.yaml", {}, 2, "nowhere.yaml"), (self.QUESTION, {"scale": "desk"}, 2, "scale"),
-                (self.QUESTION, {"cycels": 3}, 2, "--cycels"),
+                (self.QUESTION, {"cycles": 0.5}, 2, "^cycles: must be a whole number"),
+                (self.QUESTION, {"seed": 7}, 2, r"\(seeds= sets the number of seeds\)"),
                 ({**self.QUESTION, "base": {**base, "max_overlap_diameters": 1e-6}}, {}, 3, "unstable")):
             with self.assertRaisesRegex(ShearcellError, sentence) as raised:
                 shearcell.run(manifest, **how)
             self.assertEqual(raised.exception.code, code)
             self.assertNotRegex(str(raised.exception), r"Traceback|\.shearcell-|^shearcell:")
+        with contextlib.redirect_stderr(io.StringIO()) as said, self.assertRaises(ShearcellError):
+            shearcell.run({**self.QUESTION, "sede": 1})
+        self.assertEqual(said.getvalue(), "", "the bar begins with the first progress")
         with self.assertRaisesRegex(ShearcellError, "sede") as raised:
             shearcell.plan({**self.QUESTION, "sede": 1})
         self.assertEqual(raised.exception.code, 2)
         with self.assertRaisesRegex(TypeError, "a path, a text or a dict"):
             shearcell.run([3])
-        with self.assertRaises(ValueError):
+        with self.assertRaisesRegex(TypeError, "cycels"):
+            shearcell.run(self.QUESTION, cycels=3)
+        with self.assertRaisesRegex(ValueError, "^seeds: nan"):
             shearcell.run({**self.QUESTION, "seeds": float("nan")})
         with self.assertRaisesRegex(ShearcellError, "no program /nowhere") as raised:
             shearcell.run(self.QUESTION, program="/nowhere")
@@ -553,6 +608,7 @@ class Package(unittest.TestCase):
                 python.wait()
             if number == signal.SIGINT:
                 self.assertIn("KeyboardInterrupt", said)
+            self.assertEqual([p.name for p in pathlib.Path().iterdir() if p.name.startswith(".")], [], "left behind")
             for _ in range(600):  # the program ends by itself
                 if not pathlib.Path(f"/proc/{children[0]}/cmdline").is_file():
                     break
@@ -578,7 +634,11 @@ class Package(unittest.TestCase):
         same = store.figure("same")
         self.assertIn(html.escape(same.facts["results"][0]), same._repr_html_())
         self.assertEqual([f.name for f in store.figures(fluid="cell", out="of cell")], ["compaction", "same"])
+        shutil.rmtree("shearcell-figures")
+        self.assertEqual(len(store.verdicts()), 1)
+        self.assertFalse(pathlib.Path("shearcell-figures").exists())
         verdicts = store.verdicts(out="elsewhere")
+        self.assertEqual(set(verdicts[["estimate", "low", "high", "margin", "runs_needed"]].dtypes), {np.dtype(float)})
         claim = json.loads(pathlib.Path("elsewhere/asked/base/same.verdict.json").read_text())["claims"][0]
         row = verdicts[verdicts["figure"] == "same"].iloc[0]
         self.assertEqual((row["verdict"], row["margin"], row["runs"]), (claim["verdict"], 0.005, claim["runs"]))
@@ -587,7 +647,7 @@ class Package(unittest.TestCase):
         later = shearcell.Figure(facts).verdicts.iloc[0]
         self.assertEqual((later["id"], later["low"]), ("A.1", 1))
         self.assertIn("<!doctype html>", store.report("page.html").read_text(encoding="utf-8")[:20])
-        with self.assertRaisesRegex(ShearcellError, "S2") as raised:
+        with self.assertRaisesRegex(ShearcellError, "S2; to draw it anyway, add experiment=$") as raised:
             store.figure("S2")
         self.assertEqual(raised.exception.code, 2)
         self.addCleanup(os.environ.update, {"PATH": os.environ["PATH"]})
@@ -648,6 +708,51 @@ class Package(unittest.TestCase):
             del entry["function"]
         file.write_text(json.dumps(kept))
         self.assertEqual(said(define("def own(state): return 4 * state.cycle")), (3, []))
+
+    def test_a_changed_value_changes_the_text_of_a_function(self):
+        (self.folder / "own_module.py").write_text("def other(): return 1\ndef value(): return number\n")
+        sys.path.insert(0, str(self.folder))
+        self.addCleanup(sys.path.remove, str(self.folder))
+        imports = "import dataclasses, functools, numpy, own_module, pandas, re\n"
+
+        def defined(text):
+            scope = {"__name__": "own_cell"}
+            sys.modules["own_cell"] = types.ModuleType("own_cell")
+            exec(compile(imports + text, "<cell>", "exec"), scope)
+            return scope["own"]
+
+        for text, result in (
+                ("@dataclasses.dataclass\nclass P:\n  q: int = 0\nVALUE = P(NUMBER)", "VALUE.q"),
+                ("class P:\n  q = NUMBER", "P.q"), ("class Q:\n  q = NUMBER\nclass P(Q): pass", "P.q"),
+                ("class P:\n  @property\n  def q(self): return NUMBER", "P().q"),
+                ("class P:\n  @staticmethod\n  def q(): return NUMBER", "P.q()"),
+                ("VALUE = numpy.vectorize(lambda c: float(NUMBER), otypes=[float])", "VALUE(1)"),
+                ("VALUE = pandas.DataFrame({'q': [1, NUMBER]})", "VALUE['q'].sum()"),
+                ("VALUE = numpy.arange(NUMBER)", "VALUE.size"),
+                ("VALUE = re.compile('a' * NUMBER)", "len(VALUE.pattern)"),
+                ("@functools.lru_cache\ndef value(): return NUMBER", "value()"),
+                ("own_module.number = NUMBER", "own_module.value()")):
+            with self.subTest(text):
+                text += f"\ndef own(state): return {result}\n"
+                own = defined(text.replace("NUMBER", "1"))
+                first = _text_of(own, {})
+                own(None)
+                self.assertEqual(_text_of(own, {}), first, "after a call")
+                self.assertEqual(_text_of(defined(text.replace("NUMBER", "1")), {}), first)
+                self.assertNotEqual(_text_of(defined(text.replace("NUMBER", "2")), {}), first)
+        own_module = sys.modules["own_module"]
+        function = defined("def own(state): return own_module.value()")
+        before = _text_of(function, {})
+        own_module.other = own_module.value
+        self.assertEqual(_text_of(function, {}), before, "it reads nothing else of the module")
+
+    def test_a_measure_is_a_number_or_has_names(self):
+        named = self.store.measure(lambda state: pandas.Series({"a": 1, "b": state.cycle}))
+        self.assertEqual(list(named["b"]), [0, 1, 2] * 2)
+        for result in (None, (1, 2), np.arange(5), pandas.Series, {"a": None}, "x"):
+            with self.assertRaisesRegex(TypeError, "<lambda> must return a number or a mapping of names to numbers, not .*, "
+                                                   "which it returned for cycle 0 of run [0-9a-f]{12}$"):
+                self.store.measure(lambda state: result)
 
     def test_results_that_cannot_be_kept_are_returned(self):
         copy = self.copy("full")

@@ -83,4 +83,6 @@ def verdicts_of(figures: Iterable[Figure]) -> "pandas.DataFrame":
                          "low": low, "high": high})
     first = ["figure", "experiment", "scale", "claim", "verdict", "estimate", "low", "high", "margin"]
     frame = pandas.DataFrame(rows, columns=None if rows else first)
+    numbers = {"estimate", "low", "high", "margin", "runs_needed"}.intersection(frame)
+    frame = frame.astype(dict.fromkeys(numbers, float))  # a number that is unknown is NaN
     return frame[first + [name for name in frame if name not in first]]

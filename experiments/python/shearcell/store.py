@@ -2,6 +2,7 @@
 """Stores and runs. The commands of the program read them."""
 from __future__ import annotations
 
+import copyreg
 import dis
 import functools
 import hashlib
@@ -10,14 +11,16 @@ import math
 import numbers
 import os
 import re
+import reprlib
 import sys
+import tempfile
 import types
 import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Callable, Iterable, Iterator, Mapping, Union
 
 from .figures import Figure, Figures, verdicts_of
-from .program import ShearcellError, call, error_of, find_program, need, options, output_of
+from .program import call, error_of, find_program, full_path, in_python, need, options, output_of, whole
 
 if TYPE_CHECKING:
     import pandas
@@ -45,7 +48,7 @@ class Store:
 
     def __init__(self, path: str | os.PathLike[str] = "shearcell-store",
                  program: str | os.PathLike[str] | None = None) -> None:
-        self.path = Path(path).absolute()
+        self.path = full_path(path)
         self._not_kept: set[str] = set()  # measures without a key, of which measure() has warned
         self.program = find_program(program)
         if not (self.path / "store.sqlite").is_file():
@@ -54,6 +57,10 @@ class Store:
     def call(self, *arguments: str | os.PathLike[str]) -> str:
         """Output of `shearcell ARGUMENTS --store PATH`. Raises ShearcellError."""
         return output_of(self.program, *arguments, "--store", self.path)
+
+    def _output(self, *arguments: str | os.PathLike[str]) -> str:
+        """As call(), with errors in the words of this package."""
+        return output_of(self.program, *arguments, "--store", self.path, translate=in_python)
 
     def version(self) -> str:
         """The first line of `shearcell --version`."""
@@ -72,7 +79,7 @@ class Store:
 
     def _recorded(self, select: Mapping[str, Any]) -> list["Run"]:
         """As runs(), with the runs of older versions of manifests."""
-        listed = json.loads(self.call("status", "--json", *_filters(select)))["runs"]
+        listed = json.loads(self._output("status", "--json", *_filters(select)))["runs"]
         return [Run(self, {**facts, **place})
                 for facts in listed if facts["kind"] != "prepare" for place in facts["places"]]
 
@@ -102,7 +109,7 @@ class Store:
             raise ValueError("a curve has a row for each value at each checkpoint; leave out `per`")
         rows = ("--curve", curve) if curve else ("--per", per)
         asked = ("table", *rows, *_filters(select))
-        found = json.loads(self.call(*asked, "--json"))["rows"]
+        found = json.loads(self._output(*asked, "--json"))["rows"]
         if not found:
             return pandas.DataFrame(columns=self.call(*asked).splitlines()[0].split(","))
         table = pandas.DataFrame(found)
@@ -115,16 +122,17 @@ class Store:
         checkpoint; needs pandas.
 
         If the function returns a number, its column has the name of the key, or of the function if there is no
-        key. If it returns a mapping, each name of the mapping is a column. Where the file of the checkpoint is
-        pruned, the result is missing.
+        key. If it returns a mapping or a pandas Series, each of its names is a column. Where the file of the
+        checkpoint is pruned, the result is missing.
 
         With a key, results are kept beside the store, in PATH.measures/KEY.json: a checkpoint is
         computed once, and its results stay when its file is pruned. The key is your promise that
         the function is always the same and depends on the checkpoint alone: after a change use
         another key or fresh=True. A hash of the function is kept beside its results, and a warning
-        says if it has changed since: its code, its defaults, and the numbers, texts and functions
-        that it captures. Data that it reads elsewhere are not compared, and nothing is compared after a
-        change of Python's version. Results of another build of the program are computed again.
+        says if it has changed since: its code, its defaults, and the values, functions, classes and modules
+        that it reads. Functions and classes of Python and of installed packages are compared by name, files
+        that the function opens are not compared, and nothing is compared after a change of Python's version.
+        Results of another build of the program are computed again.
         Results that are not finite are not kept: they may need an earlier checkpoint, whose file may be
         restored.
 
@@ -161,8 +169,13 @@ class Store:
                 found = None if fresh and stored else kept.get(sha256, stored)
                 if found is None and stored:
                     result = function(checkpoint_class()(run, record))
-                    named = result if isinstance(result, Mapping) else {name: result}
-                    found = {str(column): float(value) for column, value in named.items()}
+                    named = result if isinstance(result, (Mapping, pandas.Series)) else {name: result}
+                    try:
+                        found = {str(column): float(value) for column, value in named.items()}
+                    except (TypeError, ValueError):
+                        raise TypeError(f"{_name_of(function)} must return a number or a mapping of names to numbers, "
+                                        f"not {reprlib.repr(result)}, which it returned for cycle {record['cycle']:g} "
+                                        f"of run {run.id[:12]}") from None
                     if taken := set(found).intersection(table.columns):
                         raise ValueError(f"the table has a column {min(taken)} already; "
                                          "give the measure another name")
@@ -189,18 +202,18 @@ class Store:
             wide: drawings as wide as two columns of a journal.
             select: experiment, scale, variant, seed or a swept parameter, as for runs(); one scale.
         """
-        done = call(self.program, "figures", *names, "--out", os.path.abspath(out),
+        done = call(self.program, "figures", *names, "--out", full_path(out),
                     *options(width="double" if wide else None), *_filters(select), "--json", "--store", self.path)
         lines = done.stderr.decode(errors="replace").splitlines()
         try:
             found = Figures(map(Figure, json.loads(done.stdout)["figures"]))
         except ValueError:
-            raise error_of(done.returncode, lines) from None
+            raise error_of(done.returncode, lines, in_python) from None
         undrawn = [why for figure in found for why in figure.undrawn]
         if done.returncode not in ((0, 1) if undrawn else (0,)):
-            raise error_of(done.returncode, lines)
+            raise error_of(done.returncode, lines, in_python)
         for why in dict.fromkeys([*undrawn, *(line[9:] for line in lines if line.startswith("warning: "))]):
-            warnings.warn(why, stacklevel=2)
+            warnings.warn(in_python(why), stacklevel=2)
         return found
 
     def figure(self, name: str, **how: Any) -> Figure:
@@ -213,15 +226,16 @@ class Store:
 
     def verdicts(self, *names: str, **how: Any) -> "pandas.DataFrame":
         """The verdicts of figures: a row for each claim, with the ends of its interval as `low` and
-        `high`; arguments as for figures(); needs pandas."""
+        `high`; arguments as for figures(); needs pandas. The figures are deleted again if `out` is not given."""
         need("pandas")
-        return verdicts_of(self.figures(*names, **how))
+        with tempfile.TemporaryDirectory(prefix="shearcell-python-") as folder:
+            return verdicts_of(self.figures(*names, **{"out": folder, **how}))
 
     def report(self, path: str | os.PathLike[str] = "report.html", **select: Any) -> Path:
         """Writes the interactive page of `shearcell report`, and returns its path. `select` as for
         runs(), without `state`."""
-        self.call("report", "--out", os.path.abspath(path), *_filters(select))
-        return Path(path).absolute()
+        self._output("report", "--out", full_path(path), *_filters(select))
+        return full_path(path)
 
     def __repr__(self) -> str:
         return f"Store({str(self.path)!r})"
@@ -328,7 +342,8 @@ class _Kept:
             self.program = store.version()
             # The version of Python is part of the text, because the code's bytes depend on it.
             text = _text_of(function, {})
-            self.function = f"{sys.version_info[0]}.{sys.version_info[1]} {hashlib.sha256(text.encode()).hexdigest()}"
+            python = f"{sys.version_info[0]}.{sys.version_info[1]}/2"  # 2: version of _text_of
+            self.function = f"{python} {hashlib.sha256(text.encode()).hexdigest()}"
             self.known = self._read()
 
     def _read(self) -> dict[str, dict[str, Any]]:
@@ -380,66 +395,99 @@ def _name_of(function: Measure) -> str:
     return getattr(function, "__name__", type(function).__name__)
 
 
-def _text_of(value: Any, seen: Mapping[int, int]) -> str:
-    """A text of a function that is equal for two functions that compute the same: their code, without line numbers and
-    documentation, and the values that they capture."""
+def _text_of(value: Any, seen: dict[int, tuple[int, Any]]) -> str:
+    """A text that is equal for two functions that compute the same: their code, without line numbers and documentation,
+    and the values that they read. Other values have the text of their content; what is of a library, and what has no
+    content that can be read, has its name. `seen`: by id, the number of each value, and the value to keep its id."""
     if value is None or isinstance(value, (bool, int, float, complex, str, bytes, type(...))):
         return repr(value)
-    if id(value) in seen:  # a function that calls itself
-        return f"<{seen[id(value)]}>"
-    if isinstance(value, (types.ModuleType, types.BuiltinFunctionType)) or len(seen) > 30:
-        return f"{type(value).__name__} {getattr(value, '__name__', '')}"
-    seen = {**seen, id(value): len(seen)}
-    parts: Any = ()
+    kind = type(value)
+    if kind.__module__.startswith(f"{__package__}."):  # a Store, Run or Checkpoint
+        return repr(value)
+    if id(value) in seen:
+        return f"<{seen[id(value)][0]}>"
+    if kind not in (tuple, frozenset):  # equal ones may be one object or several
+        seen[id(value)] = len(seen), value
+    parts: Any
     if isinstance(value, types.CodeType):
         parts = (value.co_code, value.co_names, value.co_varnames, value.co_argcount, value.co_consts)
-    elif isinstance(value, types.FunctionType) and not _LIBRARY.search(value.__code__.co_filename):
-        code, scope = value.__code__, value.__globals__
+    elif isinstance(value, types.ModuleType):
+        return f"module {value.__name__}"
+    elif isinstance(value, (types.FunctionType, type)) and _is_of_library(value):
+        return f"{value.__module__} {value.__qualname__}"
+    elif isinstance(value, types.FunctionType):
+        code = value.__code__
         # The documentation is a constant of the code.
         parts = (code.replace(co_consts=tuple(None if each is value.__doc__ else each for each in code.co_consts)),
                  value.__defaults__, value.__kwdefaults__,
                  [cell.cell_contents for cell in value.__closure__ or () if cell != types.CellType()],
-                 [scope.get(name) for name in _globals_of(code)])
-    elif isinstance(value, functools.partial):
-        parts = (value.func, value.args, value.keywords)
-    elif isinstance(value, types.MethodType):
-        parts = (value.__func__, value.__self__)
-    elif isinstance(value, Mapping):
-        parts = [part for pair in value.items() for part in pair]
-    elif isinstance(value, (tuple, list)):
-        parts = value
-    elif isinstance(value, (set, frozenset)):
-        parts = sorted(_text_of(part, seen) for part in value)
-    elif type(value).__module__ == "numpy" and hasattr(value, "tobytes"):
-        parts = (str(value.dtype), value.shape, value.tobytes())
-    elif isinstance(value, types.FunctionType):
-        pass  # of a library
+                 _read_by(code, value.__globals__))
     elif isinstance(value, type):
-        parts = [each for each in vars(value).values() if isinstance(each, types.FunctionType)]
-    elif any(_LIBRARY.search(each.__code__.co_filename) for each in vars(type(value)).values()
-             if isinstance(each, types.FunctionType)):
-        parts = ()  # an object of a library, such as a DataFrame
+        parts = (value.__bases__, {name: each for name, each in vars(value).items()
+                                   if isinstance(each, types.FunctionType) or not name.startswith("__")})
+    elif kind in (set, frozenset):
+        parts = sorted(_text_of(part, seen) for part in value)
+    elif kind is dict:
+        parts = [part for pair in value.items() for part in pair]
+    elif kind in (tuple, list):
+        parts = value
     else:
-        parts = (type(value), getattr(value, "__dict__", ()))
-    own = isinstance(value, types.FunctionType) and parts != ()  # it may have any name
-    name = "" if own else getattr(value, "__name__", "")
-    return f"{type(value).__name__} {name}({', '.join(_text_of(part, seen) for part in parts)})"
+        parts = _state_of(value)
+    try:
+        return f"{kind.__name__}({', '.join([_text_of(part, seen) for part in parts])})"
+    except RecursionError:
+        return kind.__name__
 
 
-# Files of Python and of packages, this one included, whose functions are not compared.
+def _state_of(value: Any) -> list[Any]:
+    """What pickle writes of an object. Of an object of a library that wraps functions, the functions: pickle cannot
+    write a property or a static method, and it writes caches of others."""
+    if _is_of_library(type(value)) and not isinstance(value, (types.MethodType, functools.partial)):
+        inner = [getattr(value, name) for name in ("__wrapped__", "__func__", "fget", "pyfunc", "py_func")
+                 if name in vars(type(value)) or name in getattr(value, "__dict__", ())]
+        if inner:  # functools.cache, staticmethod, property, numpy.vectorize, numba.jit
+            return inner
+    try:
+        reduce = copyreg.dispatch_table.get(type(value))
+        reduced = reduce(value) if reduce else value.__reduce_ex__(4)
+    except Exception:  # each class has its own
+        reduced = getattr(value, "__name__", "")
+    parts = [type(value), *([reduced] if isinstance(reduced, str) else reduced)]
+    return [list(part) if isinstance(part, Iterator) else part for part in parts]
+
+
+# Files of Python and of packages, this one included.
 _LIBRARY = re.compile(f"^({re.escape(os.path.dirname(os.__file__))}|{re.escape(os.path.dirname(__file__))})/"
                       "|/(site|dist)-packages/")
 
 
-def _globals_of(code: types.CodeType) -> list[str]:
-    """Names that the code and the functions inside it read from their module."""
-    names = [step.argval for step in dis.get_instructions(code) if step.opname in ("LOAD_GLOBAL", "LOAD_NAME")]
-    return names + [name for each in code.co_consts if isinstance(each, types.CodeType) for name in _globals_of(each)]
+def _is_of_library(value: Any) -> bool:
+    """Whether a function, a class or a module is of Python or of an installed package."""
+    home = value if isinstance(value, types.ModuleType) else sys.modules.get(value.__module__)
+    file = value.__code__.co_filename if isinstance(value, types.FunctionType) else getattr(home, "__file__", None)
+    return getattr(home, "__name__", "") in sys.builtin_module_names or bool(_LIBRARY.search(file or ""))
+
+
+def _read_by(code: types.CodeType, scope: Mapping[str, Any]) -> list[Any]:
+    """The values that the code, with the functions inside it, reads from its module and from other modules that are
+    not of a library."""
+    codes = [code]
+    for each in codes:
+        codes += [inner for inner in each.co_consts if isinstance(inner, types.CodeType)]
+    steps = [step for each in codes for step in dis.get_instructions(each)]
+    read = [scope.get(step.argval) for step in steps if step.opname in ("LOAD_GLOBAL", "LOAD_NAME")]
+    names = {name: None for each in codes for name in each.co_names}
+    modules = []
+    for each in read:
+        if isinstance(each, types.ModuleType) and each not in modules and not _is_of_library(each):
+            modules.append(each)
+            read += [vars(each)[name] for name in names if name in vars(each)]
+    return read
 
 
 def _texts(values: Any) -> list[str]:
     several = isinstance(values, Iterable) and not isinstance(values, str)
-    return [str(value) for value in values] if several else [str(values)]
+    return [str(whole(value)) for value in (values if several else [values])]
 
 
 def _filters(select: Mapping[str, Any]) -> list[str]:
