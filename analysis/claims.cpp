@@ -161,9 +161,9 @@ Verdict at_looks(const ClaimSpec& claim, Claim stated, const ClaimSides& sides,
   }
   if (verdict.ruling == Ruling::undecided && next != looks.end()) {
     verdict.runs_needed.reset();
-    add_note(verdict.note, fmt::format("{} of {} seeds have ended; the next look (interim "
-                                       "analysis) is at {} seeds",
-                                       ended, seeds.size(), *next));
+    add_note(verdict.note,
+             fmt::format("{} of {} have ended; the next look (interim analysis) is at {}", ended,
+                         counted(seeds.size(), "seed"), counted(*next, "seed")));
     if (looks.size() > 1 && verdict.estimate && std::isfinite(verdict.spread)) {
       const auto power = power_of(stated, *verdict.estimate, verdict.spread, verdict.groups, looks);
       const LookPower& there = power[static_cast<std::size_t>(next - looks.begin())];
@@ -199,9 +199,12 @@ std::optional<Verdict> decide_one(const ClaimSpec& claim, const Frame& frame) {
   if (sides.lacks_one && !claim.listed) {
     const std::string& name = sides.names[sides.runs[0].empty() ? 0 : 1];
     const std::string reach = claim.cycles ? " of " + estimator_of(claim).scalar(claim).reach : "";
-    return decide(
-        decided, "difference in " + words_of(claim), std::nullopt, 0,
+    const Verdict none = decided_by(claim, decided, {}, {});
+    Verdict verdict = decide(
+        decided, none.quantity, std::nullopt, 0,
         fmt::format("no run{} has a checkpoint{}", name.empty() ? "" : " with " + name, reach));
+    verdict.waits_for = none.waits_for;
+    return verdict;
   }
   return at_looks(claim, decided, sides, frame);
 }
@@ -223,6 +226,17 @@ ClaimSides sides_of(const ClaimSpec& claim, std::span<const FrameRun> runs) {
 }
 
 namespace {
+
+/// What to add to a side that selects several variants: "Add `pressure_Pa: 300` or another value."
+std::string remedy_for(RunGroup side) {
+  std::vector<nlohmann::json> swept;
+  for (const FrameRun* run : side) swept.push_back(run->place.swept);
+  std::vector<std::string> values;
+  for (const std::string& key : varied_keys(swept)) {
+    values.push_back(fmt::format("{}: {}", key, value_text(parameter_of(*side.front(), key))));
+  }
+  return values.empty() ? "" : fmt::format(" Add `{}` or other values.", fmt::join(values, ", "));
+}
 
 /// For each run of side `k`: its swept values, without the keys that select this side. A claim may
 /// average over these values if they are the same on both sides.
@@ -253,12 +267,13 @@ std::vector<std::string> problems_of_sides(const ClaimSpec& claim, const ClaimSi
     if (variants == 1 || (variants > 1 && (averages || estimator_of(claim).over_variants)) ||
         (variants == 0 && !planned))
       continue;
-    problems.push_back(
-        (claim.between[k].empty()
-             ? fmt::format("there are {} variants; `of` must select one variant.", variants)
-             : fmt::format(
-                   "{}; `{}` must select one variant{}.", variants_have(variants, claim.between[k]),
-                   claim.published ? "of" : "between", claim.published ? "" : " on each side")));
+    const nlohmann::json& where = claim.between[k];
+    problems.push_back(fmt::format("{}; `{}` must select one variant{}.{}",
+                                   where.empty() ? fmt::format("there are {} variants", variants)
+                                                 : variants_have(variants, where),
+                                   has_one_side(claim) ? "of" : "between",
+                                   has_one_side(claim) ? "" : " on each side",
+                                   remedy_for(sides.runs[k])));
   }
   const auto& [a, b] = sides.runs;
   if (problems.empty() && !a.empty() && !b.empty() && a.front()->stage.id == b.front()->stage.id) {
