@@ -174,9 +174,9 @@ Verdict at_looks(const ClaimSpec& claim, Claim stated, const ClaimSides& sides,
   }
   if (verdict.ruling == Ruling::undecided && next != looks.end()) {
     verdict.runs_needed.reset();
-    add_note(verdict.note, fmt::format("{} of {} seeds have ended; the next look (interim "
-                                       "analysis) is at {} seeds",
-                                       ended, seeds.size(), *next));
+    add_note(verdict.note,
+             fmt::format("{} of {} have ended; the next look (interim analysis) is at {}", ended,
+                         counted(seeds.size(), "seed"), counted(*next, "seed")));
     if (looks.size() > 1 && verdict.estimate && std::isfinite(verdict.spread)) {
       const auto power = power_of(stated, *verdict.estimate, verdict.spread, verdict.groups, looks);
       const LookPower& there = power[static_cast<std::size_t>(next - looks.begin())];
@@ -218,10 +218,13 @@ std::optional<Verdict> decide_one(const ClaimSpec& claim, const Frame& frame) {
     where.update(claim.between.at(sides.runs[0].empty() ? 0 : 1));
     const Estimator& estimator = estimator_of(claim);
     const bool of_cycles = claim.cycles && estimator.scalar != nullptr;
-    return decide(decided, "difference in " + words_of(claim), std::nullopt, 0,
-                  fmt::format("no run{} has a checkpoint{}",
-                              where.empty() ? "" : " with " + shearcell::words_of(where),
-                              of_cycles ? " of " + estimator.scalar(claim).reach : ""));
+    const Verdict none = decided_by(claim, decided, {}, {});
+    Verdict verdict = decide(decided, none.quantity, std::nullopt, 0,
+                             fmt::format("no run{} has a checkpoint{}",
+                                         where.empty() ? "" : " with " + shearcell::words_of(where),
+                                         of_cycles ? " of " + estimator.scalar(claim).reach : ""));
+    verdict.waits_for = none.waits_for;
+    return verdict;
   }
   return at_looks(claim, decided, sides, frame);
 }
@@ -243,6 +246,17 @@ ClaimSides sides_of(const ClaimSpec& claim, std::span<const FrameRun> runs) {
 }
 
 namespace {
+
+/// What to add to a side that selects several variants: "Add `pressure_Pa: 300` or another value."
+std::string remedy_for(RunGroup side) {
+  std::vector<nlohmann::json> swept;
+  for (const FrameRun* run : side) swept.push_back(run->place.swept);
+  std::vector<std::string> values;
+  for (const std::string& key : varied_keys(swept)) {
+    values.push_back(fmt::format("{}: {}", key, value_text(parameter_of(*side.front(), key))));
+  }
+  return values.empty() ? "" : fmt::format(" Add `{}` or other values.", fmt::join(values, ", "));
+}
 
 /// For each run of side `k`: its swept values, without the keys that select this side. A claim may
 /// average over these values if they are the same on both sides.
@@ -275,11 +289,12 @@ std::vector<std::string> problems_of_sides(const ClaimSpec& claim, const ClaimSi
       continue;
     nlohmann::json where = claim.where;
     where.update(claim.between[k]);
-    problems.push_back(fmt::format("{}; `{}` must select one variant{}.",
+    problems.push_back(fmt::format("{}; `{}` must select one variant{}.{}",
                                    where.empty() ? fmt::format("there are {} variants", variants)
                                                  : variants_have(variants, where),
                                    has_one_side(claim) ? "of" : "between",
-                                   has_one_side(claim) ? "" : " on each side"));
+                                   has_one_side(claim) ? "" : " on each side",
+                                   remedy_for(sides.runs[k])));
   }
   const auto& [a, b] = sides.runs;
   if (problems.empty() && !a.empty() && !b.empty() && a.front()->stage.id == b.front()->stage.id) {

@@ -176,7 +176,7 @@ Verdict compare(const Claim& claim, const Scalar& scalar, RunGroup a, RunGroup b
     const std::vector<CensoredValue> x = all.over_packings(a), y = all.over_packings(b);
     estimate = censored_difference(x, y, false, claim.level);
     runs = std::min(x.size(), y.size());
-    note = fmt::format("{} and {} independent runs", x.size(), y.size());
+    note = fmt::format("the two sides have {} and {} independent runs", x.size(), y.size());
   }
   if (estimate && scalar.relative) {  // a difference of logarithms
     estimate = mapped(*estimate, [](double log_ratio) { return std::expm1(log_ratio); });

@@ -201,7 +201,7 @@ std::string numbers_of(const Verdict& verdict) {
   text += fmt::format(", {}{}",
                       counted(verdict.runs, verdict.counted == Counted::pairs ? "pair" : "run"),
                       verdict.counted == Counted::runs_per_variant ? " per variant" : "");
-  if (verdict.runs_needed) text += fmt::format(" of {} needed", *verdict.runs_needed);
+  if (verdict.runs_needed) text += fmt::format(" ({} needed)", *verdict.runs_needed);
   if (verdict.censored > 0) text += fmt::format(", {} censored", verdict.censored);
   if (verdict.primary) text += ", primary claim";
   return text;

@@ -103,7 +103,7 @@ Table entered_table(std::span<const Verdict> verdicts);
 /// null. The same verdicts give the same bytes.
 nlohmann::json to_json(std::span<const Verdict> verdicts);
 
-/// "0.0012, 90 % interval -0.0003 to 0.0027, margin 0.001, 6 runs per variant of 24 needed". For
+/// "0.0012, 90 % interval -0.0003 to 0.0027, margin 0.001, 6 runs per variant (24 needed)". For
 /// waiting times: "the first is at least 3.3 times later (90 %), margin: twice, 6 runs per
 /// variant".
 std::string numbers_of(const Verdict& verdict);

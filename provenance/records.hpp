@@ -67,6 +67,11 @@ inline std::string at_scale(const std::string& scale) {
   return scale.empty() ? "" : " at scale " + scale;
 }
 
+/// The name of a variant in sentences: "no sweep" instead of "base".
+inline std::string variant_in_words(const std::string& variant) {
+  return variant == "base" ? "no sweep" : variant;
+}
+
 /// Which checkpoints to list. `and_pruned`: recorded and pruned. `all`: also rejected ones.
 enum class Listed { recorded, and_pruned, all };
 

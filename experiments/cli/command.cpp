@@ -44,8 +44,10 @@ void print_problems(const MeasureOutcome& outcome, const char* left_out, Context
       print_stderr("{}: {}\n", left_out, line);
     }
     if (lines->size() > most) {
-      print_stderr("{}: {} more {} checkpoints\n", left_out, lines->size() - most,
-                   lines == &outcome.damage ? "damaged" : "pruned");
+      const bool damaged = lines == &outcome.damage;
+      print_stderr("{}: {}\n", left_out,
+                   counted(lines->size() - most,
+                           damaged ? "more damaged checkpoint" : "more pruned checkpoint"));
     }
   }
   if (!outcome.cache_trouble.empty()) {

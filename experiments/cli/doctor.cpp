@@ -20,6 +20,7 @@
 #include "experiments/runner/outlook.hpp"
 #include "provenance/io/child_process.hpp"
 #include "provenance/io/clock.hpp"
+#include "provenance/words.hpp"
 
 namespace shearcell::cli {
 namespace {
@@ -124,7 +125,7 @@ std::vector<Check> examine(const std::string& store, bool with_speed) {
   const std::size_t cores = usable_cores();
   std::vector<Check> found = {{"processor", facts.at("cpu").get<std::string>(), "ok", ""},
                               {"cores", fmt::format("{} usable", cores), "ok",
-                               fmt::format("`run` computes {} runs at a time", cores)},
+                               fmt::format("`run` computes {} at a time", counted(cores, "run"))},
                               vectors(facts.at("simd").get<std::string>()),
                               memory(),
                               disk(place),

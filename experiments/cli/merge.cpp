@@ -38,7 +38,11 @@ void merge(const std::vector<std::string>& sources, Context& context) {
     fail(context, finding.severity == Finding::Severity::error ? kStoreDamaged : kOtherError);
   }
   for (const std::string& note : left_out(store)) {
-    if (!known.contains(note)) warn(context, note);
+    if (known.contains(note)) continue;
+    const bool edited = note.find(" of manifest version ") != std::string::npos;
+    warn(context, note + (edited ? ". To show all runs, run one manifest that lists all of them; "
+                                   "only missing runs are computed"
+                                 : ""));
   }
   if (context.json) {
     const auto facts = [](const MergeReport& report) -> nlohmann::json {

@@ -65,14 +65,20 @@ nlohmann::json facts(const std::optional<TimeStep>& step) {
           {"over_stability_limit", step->over_stability_limit}};
 }
 
-void print_numerics(const std::vector<Line>& lines) {
+std::string shown_name(const Line& line, const VariantNames& names) {
+  return line.stage.kind == name_of(StageKind::prepare)
+             ? names.of(line.stage, line.memberships.back().place)
+             : line.run->name;
+}
+
+void print_numerics(const std::vector<Line>& lines, const VariantNames& names) {
   std::vector<Facts> rows;
   for (const Line& line : lines) {
     const Parameters& p = parameters_of(line);
     const std::string& kind = line.stage.kind;
     const auto step = time_step_of(line);
     Facts row = {{"", kind, "stage"},
-                 {"", kind == name_of(StageKind::prepare) ? "" : line.run->name, "variant"},
+                 {"", shown_name(line, names), "variant"},
                  {"", kind == name_of(StageKind::shear) ? std::to_string(p.steps_per_cycle) : "",
                   "steps/cycle"},
                  {"", step ? fmt::format("{:.4g}", step->seconds) : "", "dt [s]"},
@@ -144,9 +150,10 @@ void note_looks(const std::vector<Plan>& plans, const std::vector<Line>& lines,
           std::ranges::find_if(scale.looks, [&](std::uint64_t look) { return left_at(look) > 0; });
       if (next == scale.looks.end()) continue;
       notes.push_back(fmt::format(
-          "{}: the next planned look (interim analysis) uses {} of {} seeds and needs {:.3g} more "
+          "{}: the next planned look (interim analysis) uses {} of {} and needs {:.3g} more "
           "particle-steps. The notes of a verdict give the chance that this look decides the claim",
-          plan.manifest.experiment, *next, scale.seeds.values.size(), left_at(*next)));
+          plan.manifest.experiment, *next, counted(scale.seeds.values.size(), "seed"),
+          left_at(*next)));
     }
   }
 }
@@ -229,8 +236,7 @@ Facts facts(const Line& line, const VariantNames& names, bool of_several_experim
   Facts all = {{"id", line.stage.id, "run", line.stage.id.substr(0, 8)},
                {"stage", line.stage.kind, "stage"},
                {"experiment", run.place.experiment},
-               {"variant", run.place.variant, "variant",
-                prepare ? names.of(line.stage, line.memberships.back().place) : run.name},
+               {"variant", run.place.variant, "variant", shown_name(line, names)},
                {"seed", run.place.seed, "seed"},
                {"N", run.parameters.grains, "N"},
                {"cycles", static_cast<std::uint64_t>(cycles), "cycle",
@@ -311,20 +317,23 @@ void plan(const PlanOptions& options, Context& context) {
                        {"particle_steps_per_second_and_core", left.rate},
                        {"rate_measured", left.measured}});
   }
-  fmt::print("{}{}: {}, {}\n\n", experiment, at_scale(scale), counted(runs_planned, "run"),
+  fmt::print("{}{}: {}, {}\n", experiment, at_scale(scale), counted(runs_planned, "run"),
              counted(lines.size(), "stage"));
-  print_table(stages);
-  print_numerics(lines);
-  if (std::ranges::all_of(lines, [](const Line& line) { return line.look.done; })) {
-    fmt::print("\nleft: nothing\n");
-  } else {
-    fmt::print(
-        "\nleft: {:.3g} particle-steps, about {} on {} at {:.0f} M particle-steps/s each "
-        "({}),\n      about {} on disk\n",
-        left.particle_steps, format_duration(seconds), counted(cores, "core"), left.rate * 1e-6,
-        left.measured ? "measured in this store" : "assumed until a run has been measured",
-        format_bytes(left.bytes));
-    print_until(lines, with_until, left.particle_steps);
+  if (!lines.empty()) {
+    fmt::print("\n");
+    print_table(stages);
+    print_numerics(lines, names);
+    if (std::ranges::all_of(lines, [](const Line& line) { return line.look.done; })) {
+      fmt::print("\nleft: nothing\n");
+    } else {
+      fmt::print(
+          "\nleft: {:.3g} particle-steps, about {} on {} at {:.0f} M particle-steps/s each "
+          "({}),\n      about {} on disk\n",
+          left.particle_steps, format_duration(seconds), counted(cores, "core"), left.rate * 1e-6,
+          left.measured ? "measured in this store" : "assumed until a run has been measured",
+          format_bytes(left.bytes));
+      print_until(lines, with_until, left.particle_steps);
+    }
   }
   if (!notes.empty()) fmt::print("\n{}\n", fmt::join(notes, "\n"));
 }

@@ -18,6 +18,7 @@
 #include "experiments/manifest/document.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/shipped.hpp"
+#include "experiments/manifest/suggest.hpp"
 #include "experiments/runner/outlook.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/json_text.hpp"
@@ -121,8 +122,9 @@ Facts facts_of(const Store& store, const Stage& stage) {
                       {"target_cycles", ask.target_cycles},
                       {"manifest", place.manifest},
                       {"overrides", overrides}});
-    places_text += fmt::format("{}{}: {}, seed {}, manifest {:.8}\n", place.experiment,
-                               at_scale(place.scale), place.variant, place.seed, place.manifest);
+    places_text +=
+        fmt::format("{}{}: {}, seed {}, manifest {:.8}\n", place.experiment, at_scale(place.scale),
+                    variant_in_words(place.variant), place.seed, place.manifest);
     for (const std::string& line : describe(overrides)) places_text += line + "\n";
   }
   return {
@@ -133,7 +135,7 @@ Facts facts_of(const Store& store, const Stage& stage) {
        fmt::format("{}, cycle {:g} of {}, {}", name_of(stage.state), stage.cycle,
                    stage.target_cycles, counted(stage.attempts, "attempt"))},
       {"engine", engine, "engine",
-       engine.is_object() ? fmt::format("{} {}, {} processes", text_at(engine, "name"),
+       engine.is_object() ? fmt::format("{} {}, processes: {}", text_at(engine, "name"),
                                         text_at(engine, "version"), text_at(engine, "processes"))
                           : ""},
       {"error", stage.error, "error"},
@@ -304,7 +306,7 @@ void print_input(const FigureInput& input, const RunLineage& run, bool list, Mak
   print_text("\n");
   say("run", "{}", input.run);
   say("  of", "{} {}, seed {}, {} grains; manifest {:.8}, lines {}", input.experiment,
-      input.variant, input.seed, run.stage.grains, input.manifest, lines);
+      variant_in_words(input.variant), input.seed, run.stage.grains, input.manifest, lines);
   for (const std::string& given : describe(input.overrides)) say("", "{}", given);
   say("  cycles", "{}: {}, {}", to_text(input.states.cycles),
       counted(input.checkpoints.size(), "checkpoint"),
@@ -437,17 +439,25 @@ void require_not_undrawn(const std::string& name) {
       fmt::format("figure {} has not been drawn; run `shearcell figures {}`", name, figure));
 }
 
-/// Throws NotFound if `name` is an experiment, since `show` shows only one run.
-void require_no_experiment(const std::string& name, const std::vector<Stage>& stages) {
-  const auto is_it = [&](const Membership& m) { return m.place.experiment == name; };
-  const auto is_of = [&](const Stage& stage) {
-    return std::ranges::any_of(stage.memberships, is_it);
-  };
-  if (std::ranges::none_of(stages, is_of)) return;
-  throw NotFound(fmt::format(
-      "{0} is an experiment, but `show` needs a run, checkpoint or figure. Use `shearcell status "
-      "--experiment {0}` to list its runs, or pass --experiment {0} to `table` or `figures`",
-      name));
+/// Throws NotFound if `name` is an experiment, since `show` shows only one run, or if `name` is
+/// similar to the name of an experiment or of a drawn figure.
+void require_no_name(const Store& store, const std::string& name,
+                     const std::vector<Stage>& stages) {
+  std::set<std::string> known;
+  for (const Stage& stage : stages) {
+    for (const Membership& m : stage.memberships) known.insert(m.place.experiment);
+  }
+  if (known.contains(name)) {
+    throw NotFound(fmt::format(
+        "{0} is an experiment, but `show` needs a run, checkpoint or figure. Use `shearcell status "
+        "--experiment {0}` to list its runs, or pass --experiment {0} to `table` or `figures`",
+        name));
+  }
+  for (const FigureRecord& figure : store.figures()) known.insert(figure_name(figure));
+  const std::vector<std::string_view> names(known.begin(), known.end());
+  if (suggest_name(name, names).empty()) return;
+  throw NotFound(
+      fmt::format("the store has no run or figure '{}'; {}", name, did_you_mean(name, names)));
 }
 
 struct ShowOptions {
@@ -475,7 +485,7 @@ void show(const ShowOptions& options, Context& context) {
         name, run->id, checkpoint->sha256));
   }
   if (checkpoint) return show_checkpoint(store, *checkpoint, context);
-  if (run == stages.end()) require_no_experiment(name, stages);
+  if (run == stages.end()) require_no_name(store, name, stages);
   show_run(store, store.find_stage(name), context);
 }
 

@@ -117,7 +117,8 @@ Facts facts(const PlacedRun& listed, const Membership& shown, const View& view) 
   };
   Facts all = {
       {"id", stage.id, "run", stage.id.substr(0, 8)},
-      {"name", name, "variant", name + (shown.newest ? "" : " (older version)")},
+      {"name", name, "variant",
+       shown.newest ? name : fmt::format("{} (older version {:.8})", name, place.manifest)},
       {"seed", place.seed, "seed"},
       {"N", stage.grains, "N"},
       {"state", name_of(stage.state), "state",

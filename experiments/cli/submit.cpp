@@ -146,8 +146,8 @@ void prepare(Store& store, const std::vector<Submission>& open, const std::vecto
   for (const Submission& submission : open) {
     if (!submission.queue.empty()) continue;
     if (const std::uint64_t checkpoints = merge_tasks(store, submission); checkpoints > 0) {
-      print_stderr("merged {} checkpoints of submission {}, whose jobs have ended\n", checkpoints,
-                   submission.id);
+      print_stderr("merged {} of submission {}, whose jobs have ended\n",
+                   counted(checkpoints, "checkpoint"), submission.id);
     }
   }
   for (const Plan& plan : plans) declare(store, plan);

@@ -89,7 +89,8 @@ nlohmann::json replay(const VerifyOptions& options, Context& context) {
       print_text("{} left out: not bitwise reproducible (from LAMMPS or another program version)\n",
                  counted(left_out, "checkpoint"));
     }
-    print_text("replaying up to {} of {} checkpoints, --seed {}\n", count, all.size(), seed);
+    print_text("replaying up to {} of {}, --seed {}\n", count, counted(all.size(), "checkpoint"),
+               seed);
   }
   for (const CheckpointRecord& record : sample(all, all.size(), seed)) {
     if (list.size() == count) break;
@@ -162,8 +163,8 @@ void print(const VerifyReport& report, const MeasureCheck& measures) {
                                                            : "nothing was changed",
              report.head.seq, report.head.hash);
   if (measures.cached > 0) {
-    print_text("recomputed the cached measures of {} of {} checkpoints\n", measures.computed,
-               measures.cached);
+    print_text("recomputed the cached measures of {} of {}\n", measures.computed,
+               counted(measures.cached, "checkpoint"));
   }
   if (measures.absent > 0) {
     print_text(

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 #include <iterator>
-#include <map>
+#include <ranges>
 #include <set>
 #include <utility>
 
@@ -139,18 +139,18 @@ bool has_no_value(const Table& table) {
 /// left out. It is "" if nothing is drawn.
 std::string caption_of(const ComputedFigure& figure, const RunSelection& selected) {
   if (figure.tables.empty() || figure.tables.front().chart.series.empty()) return "";
-  const std::map<std::string, std::size_t>& runs = figure.runs_by_variant;
-  std::vector<std::string> variants, counts;
+  const auto& runs = figure.runs_by_variant;
+  std::vector<std::string> counts;
   std::set<std::size_t> distinct;
   for (const auto& [variant, count] : runs) {
-    variants.push_back(variant);
     counts.push_back(fmt::format("{}: {}", variant, count));
     distinct.insert(count);
   }
   if (runs.size() > 1 && distinct.size() == 1) {
     counts = {fmt::format("{} each of {}", *distinct.begin(),
-                          runs.size() > 6 ? fmt::format("{} variants", runs.size())
-                                          : fmt::format("{}", fmt::join(variants, "; ")))};
+                          runs.size() > 6
+                              ? fmt::format("{} variants", runs.size())
+                              : fmt::format("{}", fmt::join(runs | std::views::keys, "; ")))};
   }
   // The title of a plot from a user's manifest only repeats the labels of the axes.
   const std::string title = find_figure(figure.name) == nullptr ? "" : ". " + figure.title;
@@ -240,9 +240,19 @@ void make_of_runs(const Store& store, const WantedFigure& wanted, const FigureOp
   }
   made.title = title_of(figure, runs);
   made.runs = runs.size();
+  std::size_t without_interior = 0;
   for (const FrameRun& run : runs) {
     made.checkpoints += run.checkpoints.size();
     ++made.runs_by_variant[run.name];
+    without_interior += std::ranges::any_of(run.checkpoints, [](const CheckpointMeasures& one) {
+      return one.measures.number("interior_grains") == 0;
+    });
+  }
+  if (without_interior > 0) {
+    made.notes.push_back(
+        fmt::format("{} of {} had no interior grains (at least 1.5 d from the walls) at some "
+                    "checkpoints, so phi and other measures of interior grains have no value there",
+                    without_interior, counted(runs.size(), "run")));
   }
   static_cast<FigureResult&>(made) = figure.make(frame);
   for (Verdict& verdict : made.verdicts) {

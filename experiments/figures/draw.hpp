@@ -4,7 +4,7 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <map>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -26,10 +26,11 @@ struct ComputedFigure : MeasureOutcome, FigureResult {
   std::string title;
   std::string experiment;  ///< "" for a figure of all experiments
   std::string scale;
-  std::map<std::string, std::size_t> runs_by_variant;  ///< number of runs, by name of the variant
+  /// Number of runs, by name of the variant. The variants are in the order of their swept values.
+  nlohmann::ordered_map<std::string, std::size_t> runs_by_variant;
   std::size_t runs = 0;
   std::size_t checkpoints = 0;
-  std::vector<std::string> notes;            ///< as CollectedRuns::notes
+  std::vector<std::string> notes;            ///< CollectedRuns::notes, and why values are missing
   std::vector<std::string> primary;          ///< claims that the manifest lists under `primary`
   std::vector<std::string> empty;            ///< names of tables without a value to draw
   std::string why_empty;                     ///< "Nothing is drawn in S2b: ..."; "" if all is drawn

@@ -179,12 +179,13 @@ NewestRuns newest_runs(std::vector<Run> selected) {
              other.place.manifest == one.place.manifest;
     });
     if (instead == chosen.runs.end()) {
-      left[{experiment_scale(one), one.place.manifest}].push_back(one.place.variant);
+      left[{experiment_scale(one), one.place.manifest}].push_back(
+          variant_in_words(one.place.variant));
     } else {
       chosen.notes.push_back(fmt::format(
           "experiment {}: run {:.8} ({}, seed {}) is left out, because the manifest later declared "
           "run {:.8} for this seed",
-          one.place.experiment, one.stage.id, one.place.variant, one.place.seed,
+          one.place.experiment, one.stage.id, variant_in_words(one.place.variant), one.place.seed,
           instead->stage.id));
     }
   }
@@ -194,8 +195,7 @@ NewestRuns newest_runs(std::vector<Run> selected) {
     const auto count = std::ranges::count(chosen.runs, where, experiment_scale<Run>);
     chosen.notes.push_back(fmt::format(
         "experiment {}{}: left out: {} of manifest version {:.8} ({}); "
-        "shown: {} of the version that was registered last{}. To show all runs, use `shearcell "
-        "run` with one manifest that lists all of them; only missing runs are computed",
+        "shown: {} of the version that was registered last{}",
         where.first, at_scale(where.second), counted(variants.size(), "run"), manifest,
         some_of(std::set<std::string>(variants.begin(), variants.end())),
         counted(static_cast<std::size_t>(count), "run"),

@@ -424,8 +424,10 @@ void warn_of_parameters(const Manifest& manifest, const Scale& scale,
         start.at.line, start.at.column, seeds, start.is_recorded() ? "`noise_d`, or " : ""));
   }
   for (const auto& [one, of] : advice) {
-    warnings.push_back(format("{}: variant{} {}: {}", manifest.file, of.size() == 1 ? "" : "s",
-                              some_of(of, 8), one));
+    const bool swept = !variants.front().swept.empty();
+    warnings.push_back(format(
+        "{}: {}{}", manifest.file,
+        swept ? format("variant{} {}: ", of.size() == 1 ? "" : "s", some_of(of, 8)) : "", one));
   }
 }
 
@@ -647,8 +649,8 @@ ClaimProblems problems_of(const ClaimSpec& claim, const ScaleRuns& here) {
                                  estimator_of(claim).name));
   }
   if (here.seeds < least_runs) {
-    found.lacks.push_back(
-        format("a verdict needs at least {} seeds, but there are {}.", least_runs, here.seeds));
+    found.lacks.push_back(format("a verdict needs at least {} seeds, but the manifest has {}.",
+                                 least_runs, here.seeds));
   }
   return found;
 }

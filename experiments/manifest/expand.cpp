@@ -21,6 +21,7 @@
 #include "protocols/settle.hpp"
 #include "provenance/json_text.hpp"
 #include "provenance/sha256.hpp"
+#include "provenance/words.hpp"
 
 namespace shearcell {
 namespace {
@@ -60,9 +61,8 @@ std::vector<std::uint64_t> choose_seeds(const Manifest& manifest, const Seeds& s
   if (!wanted) return seeds;
   check_option(manifest, "seeds", *wanted, {.range = {1, ManifestLimits::runs}, .whole = true});
   if (!stated.counted && *wanted > seeds.size()) {
-    refuse(manifest.file, {}, "seeds",
-           fmt::format("the manifest lists only {} seeds", seeds.size()), std::to_string(*wanted),
-           "List more seeds, or give a number of seeds.");
+    refuse(manifest.file, {}, "seeds", "the manifest lists only " + counted(seeds.size(), "seed"),
+           std::to_string(*wanted), "List more seeds, or give a number of seeds.");
   }
   seeds.resize(*wanted);
   if (stated.counted) std::iota(seeds.begin(), seeds.end(), 1);
@@ -150,7 +150,12 @@ std::vector<FrameRun> planned_runs(const Manifest& manifest, const Scale& scale,
 }
 
 Plan expand(const Manifest& manifest, const ExpandOptions& options) {
-  if (!manifest.of.empty()) return {manifest, "", {}, {}, warnings_of(manifest)};
+  if (!manifest.of.empty()) {
+    return {.manifest = manifest,
+            .warnings = warnings_of(manifest),
+            .read = fmt::format("{} has no runs of its own. Its figures use the runs of {}.",
+                                manifest.experiment, fmt::join(manifest.of, ", "))};
+  }
   Scale scale = choose_scale(manifest, options.scale);
   if (options.cycles) {
     check_option(manifest, "cycles", *options.cycles, *find_field("cycles"));
@@ -169,7 +174,7 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
   }
 
   std::vector<Variant> variants = variants_of(scale);
-  Plan plan{manifest, scale.name, {}, {}, {}};
+  Plan plan{.manifest = manifest, .scale = scale.name};
   if (!scale.start.file.empty()) plan.file = read_packing_file(manifest, scale);
   Membership common{{.experiment = manifest.experiment,
                      .scale = plan.scale,

@@ -39,11 +39,12 @@ struct PlannedRun : Run {
 
 struct Plan {
   Manifest manifest;
-  std::string scale;
-  std::optional<PackingText> file = {};  ///< the initial grains of all packings
-  std::vector<PlannedRun> runs;          ///< by variant, then by seed, as the manifest lists them
-  std::vector<std::string> warnings;     ///< about probable mistakes; one line each
-  std::string read = {};                 ///< what was read from the file of grains, in one line
+  std::string scale = {};
+  std::optional<PackingText> file = {};    ///< the initial grains of all packings
+  std::vector<PlannedRun> runs = {};       ///< by variant, then by seed, as the manifest lists them
+  std::vector<std::string> warnings = {};  ///< about probable mistakes; one line each
+  /// What was read from the file of grains, or whose runs the figures use (`of`); one line or "".
+  std::string read = {};
 };
 
 /// Throws ManifestError if an option does not fit the manifest, such as an unknown scale.

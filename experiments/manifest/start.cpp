@@ -189,9 +189,10 @@ const Stage& recorded_run(const Manifest& manifest, const Scale& scale, const Va
   if (found.front()->cycle > cycle && !asks.empty() && std::ranges::none_of(asks, records_it)) {
     refuse(manifest.file, start.at, "start",
            fmt::format("run {:.8} has no checkpoint at cycle {}", found.front()->id, cycle), "",
-           fmt::format("It has checkpoints every {} cycles and at cycle {}. Name one of these "
+           fmt::format("It has checkpoints every {} and at cycle {}. Name one of these "
                        "cycles, or run its manifest again with `checkpoints: {{every_cycles: 1}}`.",
-                       std::ranges::min(asks, {}, &Ask::checkpoint_every).checkpoint_every,
+                       counted(std::ranges::min(asks, {}, &Ask::checkpoint_every).checkpoint_every,
+                               "cycle"),
                        found.front()->cycle));
   }
   require_same_cell(manifest, scale, variant, *found.front());

@@ -200,8 +200,9 @@ json lineage_json(const FigureLineage& lineage, const ComputedFigure& figure, co
   const std::string command = "shearcell figures " + figure.name;
   return {{"scale", scale_name(lineage.scale)},
           {"plots", lineage.plots},
-          {"amount", fmt::format("{} runs, {} checkpoints; analysis version {}", figure.runs,
-                                 figure.checkpoints, text_at(figure.lineage, "analysis_version"))},
+          {"amount", fmt::format("{}, {}; analysis version {}", counted(figure.runs, "run"),
+                                 counted(figure.checkpoints, "checkpoint"),
+                                 text_at(figure.lineage, "analysis_version"))},
           {"makers", makers},
           {"manifests", manifests},
           {"outputs", outputs},
@@ -258,9 +259,10 @@ json stage_json(const RunLineage& stage) {
   json members = json::array(), attempts = json::array();
   for (const Membership& m : run.memberships) {
     const Place& place = m.place;
-    members.push_back({{"manifest", brief(place.manifest)},
-                       {"text", fmt::format("{}{}, {}, seed {}", place.experiment,
-                                            at_scale(place.scale), place.variant, place.seed)}});
+    members.push_back(
+        {{"manifest", brief(place.manifest)},
+         {"text", fmt::format("{}{}, {}, seed {}", place.experiment, at_scale(place.scale),
+                              variant_in_words(place.variant), place.seed)}});
   }
   for (const Attempt& attempt : stage.attempts) {
     const Maker maker = maker_of(attempt.host);
@@ -292,7 +294,7 @@ json stage_json(const RunLineage& stage) {
           {"attempts", attempts},
           {"parameters", parameters.dump()},
           {"checkpoints", checkpoints},
-          {"count", stage.checkpoints.size()}};
+          {"count", counted(stage.checkpoints.size(), "checkpoint")}};
 }
 
 struct Count {

@@ -450,7 +450,8 @@ std::string describe_end(const json& ended) {
                   ended.at("value").get<double>(), ended.at("reached_at_cycle").get<double>(),
                   extra > 0 ? fmt::format(" and {}", counted(extra, "more cycle")) : "");
   if (const json asked = member_of(ended, "cycles_asked"); !asked.is_null()) {
-    why = fmt::format("an experiment asks for {} cycles; {}", asked.get<double>(), why);
+    why = fmt::format("an experiment asks for {}; {}", counted(asked.get<std::size_t>(), "cycle"),
+                      why);
   }
   return why;
 }

@@ -106,7 +106,7 @@ TEST(Compare, RunsArePairedWithoutTheirFirstCheckpointAndWithoutInteriorGrains) 
 TEST(Compare, OthersAreIndependent) {
   const Runs a = group(4, 0.0002), b = group(4, 0, 0, 11);
   const Verdict verdict = compare(equal, early_phi(), pointers(a), pointers(b));
-  EXPECT_EQ(verdict.note, "4 and 4 independent runs");
+  EXPECT_EQ(verdict.note, "the two sides have 4 and 4 independent runs");
   EXPECT_NEAR(verdict.estimate.value(), -0.0098, 1e-12);
   EXPECT_EQ(verdict.ruling, Ruling::differs);
 }
@@ -132,7 +132,8 @@ TEST(Compare, ARelativeDifferenceNeedsPositiveNumbers) {
   const Claim claim = {"overlap", 0.03};
   const Verdict one = compare(claim, overlap, pointers(a), pointers(group(4, 0)));
   EXPECT_EQ(one.note,
-            "3 and 4 independent runs; 1 of 8 runs have no ratio: their value at cycle 1 is not "
+            "the two sides have 3 and 4 independent runs; 1 of 8 runs have no ratio: their value "
+            "at cycle 1 is not "
             "positive");
   EXPECT_EQ(one.runs, 3U);
   for (CheckpointMeasures& checkpoint : a[1].checkpoints)
@@ -147,7 +148,8 @@ TEST(Compare, ReportsMissingCheckpointsShortRunsAndTooFewRuns) {
   a[1].checkpoints.erase(a[1].checkpoints.begin() + 5);
   Verdict verdict = compare(equal, early_phi(), pointers(a), pointers(b));
   EXPECT_EQ(verdict.note,
-            "6 and 8 independent runs; 1 of 16 runs lack a checkpoint of cycles 1 to 15; "
+            "the two sides have 6 and 8 independent runs; 1 of 16 runs lack a checkpoint of cycles "
+            "1 to 15; "
             "1 of 16 runs end too early for cycles 1 to 15");
   EXPECT_TRUE(verdict.estimate.has_value());
   a[2].checkpoints.resize(10);
@@ -159,7 +161,8 @@ TEST(Compare, ReportsMissingCheckpointsShortRunsAndTooFewRuns) {
   EXPECT_EQ(verdict.ruling, Ruling::undecided);
   EXPECT_TRUE(has(verdict.note, "more than a quarter of the runs are left out"));
   verdict = compare(equal, early_phi(), pointers(group(2, 0)), pointers(b));
-  EXPECT_EQ(verdict.note, "2 and 8 independent runs; too few runs: 2; at least 3 are needed");
+  EXPECT_EQ(verdict.note,
+            "the two sides have 2 and 8 independent runs; too few runs: 2; at least 3 are needed");
   EXPECT_EQ(compare(equal, early_phi(), {}, pointers(b)).note,
             "the claim selects no runs, or its runs differ in a swept parameter that is not in "
             "the claim");
@@ -320,6 +323,7 @@ TEST(Claims, NameASideWithoutRunsAsItsPlannedRuns) {
 TEST(CompareWaits, CountsRunsThatEndBefore) {
   Runs a = group(4, 0), b = group(4, 0, 0, 11);
   a[0].checkpoints.resize(12);
+  for (FrameRun& run : a) run.name = "still fluid";
   const Verdict verdict =
       compare_waits({"onset", 1}, "the onset", waits_for_onset, pointers(a), pointers(b));
   const Table entered = entered_table(std::span(&verdict, 1));
@@ -328,8 +332,8 @@ TEST(CompareWaits, CountsRunsThatEndBefore) {
   EXPECT_EQ(std::get<std::string>(entered.rows[1].back()), "");
   EXPECT_EQ(
       verdict.note,
-      "first: median cycle 16 (1 of 4 runs end before the event); second: median cycle 16 (0 of 4 "
-      "runs end before the event)");
+      "still fluid: median cycle 16 (1 of 4 runs end before the event); second: median cycle 16 "
+      "(0 of 4 runs end before the event)");
   const std::vector<Waiting> waits = waits_for(pointers(a), "crystalline_percent", 5);
   EXPECT_FALSE(waits[0].observed);
   EXPECT_EQ(waits[0].cycle, 11);

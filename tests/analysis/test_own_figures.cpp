@@ -394,7 +394,9 @@ TEST(OwnClaim, ComparesWithAPublishedNumber) {
   EXPECT_EQ(verdict().claim, "B.9: they are equal");
   claim.between[0] = nlohmann::json::object();
   const std::string refusal = message_of<UsageError>([&] { verdict(); });
-  EXPECT_EQ(refusal, "claim own: there are 6 variants; `of` must select one variant.");
+  EXPECT_TRUE(has(refusal, "claim own: there are 6 variants; `of` must select one variant. Add "))
+      << refusal;
+  EXPECT_TRUE(has(refusal, "amplitude_rad: 0.0") && has(refusal, "` or other values."));
   claim.between[0] = {{"amplitude_rad", 0.06}};
   EXPECT_EQ(verdict().note, "no run with amplitude_rad=0.06 has a checkpoint of cycle 2");
 }
@@ -663,6 +665,11 @@ TEST(OwnClaim, ComparesTheCyclesAtWhichALevelIsReached) {
       << verdict.note;
   claim.reaches = 28;  // from cycle 59 to 62
   EXPECT_TRUE(has(verdict_of(claim).note, "(2 of 4 runs end before the event)"));
+  claim.between[1] = {{"fluid", "none"}};
+  EXPECT_TRUE(has(result_of(verdict_of(claim)),
+                  "cycle of crystalline_percent >= 28 (log-rank test): not measured, margin: 1.1 "
+                  "times, 0 runs"))
+      << result_of(verdict_of(claim));
 }
 
 TEST(OwnClaim, WithoutAMarginTakesThePublishedNumberAsABound) {

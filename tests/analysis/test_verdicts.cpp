@@ -99,7 +99,8 @@ TEST(Verdict, WordsHaveNoInfinities) {
   EXPECT_EQ(numbers_of(verdict), "no finite value, 90 % interval unbounded, margin 1, 0 runs");
   verdict.estimate = 2;
   verdict.interval = {1.5, infinity};
-  EXPECT_EQ(numbers_of(verdict), "2, 90 % interval 1.5 to unbounded, margin 1, 0 runs");
+  verdict.runs_needed = 9;
+  EXPECT_EQ(numbers_of(verdict), "2, 90 % interval 1.5 to unbounded, margin 1, 0 runs (9 needed)");
 }
 
 TEST(Verdict, WaitsAreComparedInWords) {

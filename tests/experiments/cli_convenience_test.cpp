@@ -278,13 +278,24 @@ TEST_F(Convenience, LabelsSelectVariants) {
   expect_refused({"table", "--variant", "at rst"}, {"did you mean at rest?"});
   expect_refused({"plan", "m.yaml", "--variant", "at sea"}, {"fluid=still; at rest; fluid=cell"});
   expect_refused({"show", "tiny"}, {"tiny is an experiment", "status --experiment tiny"});
+  expect_refused({"show", "tinny"}, {"the store has no run or figure 'tinny'; did you mean tiny?"});
 }
 
 TEST_F(Convenience, PlanNamesPackings) {
   write("m.yaml", tiny_manifest("", "sweep: {grid: {pressure_Pa: [300, 3000]}}\n"));
-  expect(0, {"plan", "m.yaml"}, {"packing P=300 Pa", "packing P=3000 Pa"});
+  for (const char* packing : {"packing P=300 Pa", "packing P=3000 Pa"}) {
+    const std::string said = expect(0, {"plan", "m.yaml"}).out;
+    EXPECT_NE(said.find(packing), said.rfind(packing)) << "in both tables\n" << said;
+  }
   write("m.yaml", tiny_manifest("", kBothFluids));
   expect(0, {"plan", "m.yaml"}, {"  packing "});
+}
+
+TEST_F(Convenience, PlanSaysThatAManifestHasNoRunsOfItsOwn) {
+  write("both.yaml", "experiment: both\nof: [tiny, other]\nplots: [{name: p, y: phi, x: cycle}]\n");
+  EXPECT_EQ(expect(0, {"plan", "both.yaml"}).out,
+            "both: 0 runs, 0 stages\n\n"
+            "both has no runs of its own. Its figures use the runs of tiny, other.\n");
 }
 
 TEST_F(Convenience, RunSumsUpManyWarnings) {

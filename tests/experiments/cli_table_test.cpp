@@ -148,6 +148,8 @@ TEST_F(CommandLineTable, HasTheRunsOfTheNewestVersionOfAManifest) {
   EXPECT_FALSE(rows[0].contains("manifest"));
   const Outcome said = expect(0, {"table", "--per", "run"});
   EXPECT_TRUE(has(said.err, "left out: 2 runs of manifest version"));
+  EXPECT_FALSE(has(said.err, "To show all runs")) << "a user may hide runs on purpose";
+  expect(0, {"status"}, {"fluid=cell (older version "});
   const nlohmann::json with_notes = json({"table", "--per", "run", "--json"});
   EXPECT_EQ(with_notes.at("rows"), rows);
   ASSERT_EQ(with_notes.at("notes").size(), 1U);

@@ -475,6 +475,17 @@ TEST_F(DrawFigure, NamesTablesWithoutValues) {
   EXPECT_TRUE(has(figure.caption, figure.why_empty));
 }
 
+TEST_F(DrawFigure, NamesVariantsInTheOrderOfTheirValuesAndRunsWithoutInteriorGrains) {
+  compute(store_, tiny_manifest("  grains: 60\n",
+                                "sweep: {grid: {pressure_Pa: [700, 1200]}}\n"
+                                "plots: [{name: own, y: phi, x: cycle}]\n"));
+  const std::string caption = draw("out", "own").caption;
+  for (const char* part : {"Runs: 1 each of P=700 Pa; P=1200 Pa.", "Nothing is drawn in own:",
+                           "Notes: 2 of 2 runs had no interior grains"}) {
+    EXPECT_TRUE(has(caption, part)) << caption;
+  }
+}
+
 TEST_F(DrawFigure, SaysWhyAFigureOfLaterCyclesIsEmpty) {
   compute(
       store_,

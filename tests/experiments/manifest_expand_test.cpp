@@ -251,7 +251,7 @@ TEST(Expand, RejectsOptionsThatDoNotFit) {
             "test.yaml: scale: is unknown, the nearest is smoke (got smok). The manifest has "
             "smoke, paper.");
   EXPECT_EQ(message(manifest, {.scale = "smoke", .seeds = 2}),
-            "test.yaml: seeds: the manifest lists only 1 seeds (got 2). List more seeds, or give a "
+            "test.yaml: seeds: the manifest lists only 1 seed (got 2). List more seeds, or give a "
             "number of seeds.");
   EXPECT_NE(message(manifest, {.scale = "smoke", .seeds = 0}), "");
   EXPECT_NE(message(manifest, {.scale = "smoke", .cycles = 1'000'000'000}), "");
@@ -366,7 +366,8 @@ TEST(Expand, WarnsOfClaimsThatTooFewSeedsCannotDecide) {
   };
   EXPECT_TRUE(warnings(3).empty());
   ASSERT_EQ(warnings(2).size(), 1U);
-  EXPECT_TRUE(has(warnings(2)[0], "claim same: a verdict needs at least 3 seeds, but there are 2"));
+  EXPECT_TRUE(
+      has(warnings(2)[0], "claim same: a verdict needs at least 3 seeds, but the manifest has 2"));
 }
 
 // A small scale is for trying; it is only said if no scale decides the claim.

@@ -248,6 +248,7 @@ export function runChecks({open, expect, shots}) {
         ["phi>abc", "0,1,2", /phi is a number, but 'abc' is not a number/], ["phi=", "0,1,2", /lacks a value/],
         ["walls<rough", "0,1,2", /walls is a text: compare it with = or !=/], ["phi>0.6,0.7", "0,1,2", /takes one number/],
         ["seed=99", "", /No run has seed = 99\. The values are 1, 2, 3\./], ["seed=1,99", "0", /No run has seed = 99/],
+        ["variant=low P", "", /No run has variant = low\. .* Write a value with blanks in quotes: variant="low P"\./],
         ["nothing", "", /No run has the text 'nothing'/], ["nothing", "", keys], ["!=", "", keys], ['seed="1', "0"]
       ]) {
         const {passes, problems} = readFilter(text, columns, words);

@@ -67,8 +67,9 @@ export function readFilter(text, columns, words) {
       const all = [...new Set(values)].filter((value) => value !== null);
       const absent = wanted.filter((one) => !all.some((value) => equal(value, one)));
       const shown = all.length > 12 ? `${all.slice(0, 12).join(", ")} and ${all.length - 12} more` : all.join(", ");
-      const unseen = absent.length === 0 ? "" : `No run has ${key} = ${absent.join(" or ")}. The values are ${shown}.`;
-      if (unseen) problems.push(unseen);
+      const blank = all.find((value) => absent.some((one) => String(value).toLowerCase().startsWith(`${one.toLowerCase()} `)));
+      const quotes = blank === undefined ? "" : ` Write a value with blanks in quotes: ${key}${sign}"${blank}".`;
+      if (absent.length > 0) problems.push(`No run has ${key} = ${absent.join(" or ")}. The values are ${shown}.${quotes}`);
       return add("", (k) => meets(values[k]) === (sign === "="));
     }
     if (!numeric) return add(`${key} is a text: compare it with = or !=, not with ${sign}.`);

@@ -142,7 +142,7 @@ export class RunTable {
     this.problem.textContent = problems.join(" ");
     this.problem.hidden = problems.length === 0;
     this.shown = this.sorted(this.rows.filter((_, k) => passes(k)));
-    this.count.textContent = `${this.shown.length} of ${this.rows.length} runs`;
+    this.count.textContent = `${this.shown.length} of ${this.rows.length} ${this.rows.length === 1 ? "run" : "runs"}`;
     const variants = Map.groupBy(this.shown, ({run}) => run.variant);
     const bodies = this.fold.checked
       ? [...variants].flatMap(([name, rows]) =>
