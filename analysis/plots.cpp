@@ -68,14 +68,14 @@ double value_of(const NumberColumn& column, const Selected& one,
 
 }  // namespace
 
-std::vector<const FrameRun*> Selection::runs() const {
+std::vector<const FrameRun*> PlotRuns::runs() const {
   std::vector<const FrameRun*> all;
   for (const Selected& one : drawn) all.push_back(one.run);
   return all;
 }
 
-Selection selected_by(const PlotSpec& plot, std::span<const FrameRun> runs) {
-  Selection selection;
+PlotRuns selected_by(const PlotSpec& plot, std::span<const FrameRun> runs) {
+  PlotRuns selection;
   json of_runs = plot.where;
   of_runs.erase("cycle");
   if (!plot.minus.empty()) selection.subtracted = runs_with(plot.minus, runs);
@@ -118,7 +118,7 @@ namespace {
 /// The runs that the plot draws. Sets a note on PlotSpec::minus for the caption. Throws UsageError
 /// if a curve would average over a swept key, or if several variants would be subtracted.
 std::vector<Selected> select(const PlotSpec& plot, const Frame& frame, std::string& note) {
-  Selection selection = selected_by(plot, frame.runs);
+  PlotRuns selection = selected_by(plot, frame.runs);
   const auto& [drawn, subtracted, alone] = selection;
   const std::size_t variants = count_variants(subtracted);
   if (variants > 1 && !plot.listed) {

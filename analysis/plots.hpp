@@ -113,7 +113,7 @@ struct Selected {
   std::vector<const CheckpointMeasures*> checkpoints = {};
 };
 
-struct Selection {
+struct PlotRuns {
   std::vector<Selected> drawn = {};
   std::vector<const FrameRun*> subtracted = {};  ///< runs with the parameters PlotSpec::minus
   std::vector<const FrameRun*> alone = {};  ///< left out, since no `subtracted` has their packing
@@ -123,7 +123,7 @@ struct Selection {
 
 /// Selects the runs and checkpoints that the plot draws. With PlotSpec::minus, a checkpoint needs a
 /// partner at the same cycle.
-Selection selected_by(const PlotSpec& plot, std::span<const FrameRun> runs);
+PlotRuns selected_by(const PlotSpec& plot, std::span<const FrameRun> runs);
 
 /// The swept key over whose values a curve of these runs would average; "" if there is none.
 std::string averaged_by(const PlotSpec& plot, RunGroup runs);

@@ -537,7 +537,7 @@ string lack_of(const ClaimSpec& claim, const FrameRun& run) {
 
 /// A message that lists the variants whose packings differ from those of the subtracted variant
 /// (`minus`); "" if all variants have the same packings.
-string lack_of_partner(const PlotSpec& plot, const Selection& selection) {
+string lack_of_partner(const PlotSpec& plot, const PlotRuns& selection) {
   if (selection.alone.empty() || selection.subtracted.size() != 1) return "";
   std::vector<string> alone;
   for (const FrameRun* run : selection.alone) alone.push_back(run->place.variant);
@@ -576,7 +576,7 @@ string unused_cycle(const PlotSpec& plot) {
 std::vector<string> problems_of(const PlotSpec& plot, const ScaleRuns& here,
                                 std::span<const ScaleRuns> all) {
   const Scale& scale = here.scale;
-  const Selection selection = selected_by(plot, here.runs);
+  const PlotRuns selection = selected_by(plot, here.runs);
   const std::vector<const FrameRun*> runs = selection.runs();
   std::vector<string> found = {problem_of_minus(plot, count_variants(selection.subtracted)),
                                lack_of_partner(plot, selection)};

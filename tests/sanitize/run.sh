@@ -17,8 +17,9 @@ mkdir -p "$logs"
 # commands out of every sanitized build.)
 #   report.Campaign   every manifest at scale smoke: too slow; each protocol and figure has smaller tests
 #   report.Browser, report.Quick    Chromium opens that report; other tests make and read reports
+#   docs.rows         draws every published figure: too slow; each figure has smaller tests
 #   bench.Speed.NoKernelIsFasterThanTheMachine    compares rates, which the sanitizers change
-left_out='^(report\.(Campaign|Browser|Quick)|bench\.Speed\.NoKernelIsFasterThanTheMachine)$'
+left_out='^(report\.(Campaign|Browser|Quick)|docs\.rows|bench\.Speed\.NoKernelIsFasterThanTheMachine)$'
 
 need() {  # need PROGRAM PACKAGE
   command -v "$1" >/dev/null && return
