@@ -120,21 +120,20 @@ Look Looks::of(RunGroup curve, const json& key) const {
   const auto dashed = [](std::size_t k) { return k % 2 == 1 ? Join::dashes : Join::line; };
   Look look = {palette[first.rank % palette.size()], curve_symbol(rest.rank), dashed(pairs),
                dashed(alone)};
-  // "" if the amplitude has no published colour, or if this colour is stated for another variant.
-  const auto published_colour = [&](const json& one) -> std::string {
+  const auto amplitude_of = [](const json& one) {
     const json value = member_of(one, "amplitude_rad");
-    if (!value.is_number()) return "";
-    const auto amplitude = value.get<double>();
-    const std::string colour = amplitude_look(amplitude, 0).colour;
-    const bool published = std::abs(published_nearest(amplitude).amplitude_rad - amplitude) < 1e-6;
-    return published && std::ranges::count(palette, colour) > 0 ? colour : "";
+    return value.is_number() ? value.get<double>() : std::nan("");
   };
-  const bool by_amplitude = !keys.empty() && keys.front() == "amplitude_rad";
-  const bool all_published =
-      std::ranges::none_of(free, [&](const json& one) { return published_colour(one).empty(); });
-  if (const std::string colour = published_colour(variant);
-      by_amplitude && all_published && !colour.empty()) {
-    look.colour = colour;
+  const auto is_published = [&](const json& one) {
+    const double amplitude = amplitude_of(one);
+    return std::abs(published_nearest(amplitude).amplitude_rad - amplitude) < 1e-6;
+  };
+  const auto has_own_colour = [&](const json& one) {  // stated for no other variant
+    return std::ranges::count(palette, amplitude_look(amplitude_of(one), 0).colour) > 0;
+  };
+  if (!keys.empty() && keys.front() == "amplitude_rad" && has_own_colour(variant) &&
+      std::ranges::all_of(variants_, is_published) && std::ranges::all_of(free, has_own_colour)) {
+    look.colour = amplitude_look(amplitude_of(variant), 0).colour;
   }
   if (!stated.colour.empty()) look.colour = stated.colour;
   if (single) look.join = look.alone = Join::line;

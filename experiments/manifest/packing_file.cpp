@@ -154,7 +154,7 @@ Meaning meaning_of(string_view column, bool units, int count = 1) {
       "((v|mom|speed)[xyz0-9]?|[pu][xyz\\[]|v.{0,3}[xyz]u?|vel.*|[xyz](v|vel|dot)|"
       "d([xyzr]|pos)dt|.*(veloc|momenta|momentum).*)");
   static const std::regex position(
-      "(pos|positions?|coord(inate)?s?|points?)[xyz0-9\\[]?|[xyz](su?|pos|coord)");
+      "(pos|positions?|coords?|coordinates?|points?)[xyz0-9\\[]?|[xyz](su?|pos|coord)");
   const string name = lower(column);
   std::smatch found;
   if (name.size() > 64 || !std::regex_match(name, found, parts)) return {};  // limits recursion
@@ -195,7 +195,7 @@ bool concerns_geometry(string_view name) {
   static const std::regex geometry(
       "lattice|box|origin($|[^a-z])|(^|[^a-z]|unit|super|sim)cell(?!_height_d$)|^properties$|"
       "^columns$|^(l|len|length|size)_?[xyz]$|^[xyz]_?(lo|hi|min|max|len|length|size)($|[^a-z])|"
-      "^(fractional|scaled|reduced)|^coord(inate)?s?($|_?(type|system|mode|style|format))|"
+      "^(fractional|scaled|reduced)|^(coords?|coordinates?)($|_?(type|system|mode|style|format))|"
       "^(?!energy|force|stress|pressure|mass|charge|temp)(.*[^a-z])?"
       "(length|distance|position|velocity|time)?units?"
       "($|_?(of|length|distance|position|velocity|time|system|style))");

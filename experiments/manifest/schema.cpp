@@ -225,10 +225,11 @@ std::span<const Field> schema() {
           "steps_per_cycle", "", "1", {4, 1e9}, kShear,
           "time steps in a cycle (Table I, B.4); `auto` keeps Table I's fraction of the stability "
           "limit, 0.355"),
-      row<&P::pause_s>("pause_s", "", "s", above(0, 1e6),
-                       {.stage = StageKind::shear, .under = ProtocolKind::paused},
-                       "with protocol `paused`: duration of the pause at zero tilt after each cycle "
-                       "(B.5); rounded to whole time steps"),
+      row<&P::pause_s>(
+          "pause_s", "", "s", above(0, 1e6),
+          {.stage = StageKind::shear, .under = ProtocolKind::paused},
+          "with protocol `paused`: duration of the pause at zero tilt after each cycle "
+          "(B.5); rounded to whole time steps"),
       row<&P::pause_walls>(
           "pause_walls", "", "", {},
           {.stage = StageKind::shear, .under = ProtocolKind::paused, .omitted_at = "moving"},

@@ -202,7 +202,7 @@ const Stage& recorded_run(const Manifest& manifest, const Scale& scale, const Va
 PackingText read_packing_file(const Manifest& manifest, const Scale& scale) {
   namespace fs = std::filesystem;
   // A manifest from /dev/stdin or /dev/fd/N has no folder.
-  const bool unnamed = manifest.file.starts_with("/dev/");
+  const bool unnamed = manifest.file.starts_with("/dev/fd/") || manifest.file == "/dev/stdin";
   const fs::path path = fs::path(unnamed ? "" : manifest.file).parent_path() / scale.start.file;
   PackingText packing{path.string(), read_text(path, kLargestPackingFile), {}};
   packing.file = {sha256_hex(packing.text), scale.start.unit, scale.settle_at.line > 0};

@@ -255,6 +255,7 @@ TEST(FigureC, NoNumberOfRunsDecidesIfTheSupplementsIntervalIsUnbounded) {
 /// Runs of two experiments, as collect_runs() joins them.
 std::vector<FrameRun> of_experiment(const std::string& experiment, std::vector<FrameRun> runs) {
   for (FrameRun& run : runs) {
+    run.stage.id += experiment;
     run.place.experiment = experiment;
     run.place.swept["experiment"] = experiment;
     run.place.variant = "experiment=" + experiment + "," + run.place.variant;

@@ -72,7 +72,7 @@ TEST_F(ReportOfRuns, HoldsTheSelectedRuns) {
   options.runs.variants = {"fluid=cell"};
   const std::string html = make(options);
   EXPECT_EQ(count(html, "<tbody data-row="), 1U);
-  EXPECT_TRUE(has(html, "<dt>inputs</dt><dd>1 runs, ")) << "of the first figure";
+  EXPECT_TRUE(has(html, "<dt>inputs</dt><dd>1 run, ")) << "of the first figure";
   EXPECT_FALSE(has(html, "<dt>inputs</dt><dd>2 runs, "));
   options.runs.experiments = {"tini"};
   EXPECT_THROW(make(options), NotFound);

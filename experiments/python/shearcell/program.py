@@ -76,10 +76,12 @@ def call(program: str, *arguments: PathLike, made: Iterable[int] = ()) -> subpro
     return subprocess.run([program, *map(_encoded, arguments)], capture_output=True, check=False, pass_fds=[*made])
 
 
-def output_of(program: str, *arguments: PathLike, translate: Callable[[str], str] = str) -> str:
-    """Output of the program. Raises ShearcellError; `translate` is applied to its message."""
+def output_of(program: str, *arguments: PathLike, translate: Callable[[str], str] = str,
+              accept: tuple[int, ...] = (0,)) -> str:
+    """Output of the program. Raises ShearcellError if its exit code is not one of `accept`; `translate` is applied to
+    the message."""
     done = call(program, *arguments)
-    if done.returncode != 0:
+    if done.returncode not in accept:
         raise error_of(done.returncode, done.stderr.decode(errors="replace").splitlines(), translate)
     return done.stdout.decode()
 

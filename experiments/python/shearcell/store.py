@@ -264,7 +264,9 @@ class Run:
 
     @functools.cached_property
     def _shown(self) -> dict[str, Any]:
-        return json.loads(self.store.call("show", self.id, "--json"))
+        # Code 4: a file is damaged. The other files can still be read.
+        return json.loads(output_of(self.store.program, "show", self.id, "--json", "--store", self.store.path,
+                                    accept=(0, 4)))
 
     @functools.cached_property
     def _place(self) -> int:
