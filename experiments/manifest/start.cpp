@@ -100,6 +100,7 @@ State state_in(const Cell& cell, const PackingFile& grains, const std::string& p
     const double outer = grains.box ? 0 : 1;  // the radii of the outermost grains [d]
     const double extent = size[axis] - outer;
     const auto unit = likelier_unit(grains.unit, p.diameter_m, extent, room - outer);
+    const string width = remedy_for_width(p, size[axis]);
     refuse(path, {}, "",
            fmt::format("the {} are {:.9g} d {}, but the cell of the manifest is {:.9g} d",
                        grains.box ? "box and grains" : "grains", size[axis],
@@ -108,11 +109,12 @@ State state_in(const Cell& cell, const PackingFile& grains, const std::string& p
            unit ? fmt::format("Is the unit of the lengths right? With lengths in {0}, the size "
                               "would be {1:.4g} d. If {0} is the unit, write it in the file "
                               "(columns x_{0}, y_{0}, z_{0}; or length_unit={0}) or in the "
-                              "manifest (`unit: {0}`).",
+                              "manifest (`unit: {0}`).{2}",
                               name_of(*unit),
                               outer + extent * metres(*unit, p.diameter_m) /
-                                          metres(grains.unit, p.diameter_m))
-                : remedy_for_width(p, size[axis]));
+                                          metres(grains.unit, p.diameter_m),
+                              size[axis] < 10 * room ? " If the unit is right: " + width : "")
+                : width);
   }
   const bool from_below = cell.moving == MovingWall::top;  // the bottom plane is fixed
   const Eigen::Vector3d shift = {grains.box ? -low.x() : 0.5 * (cell.width - low.x() - high.x()),

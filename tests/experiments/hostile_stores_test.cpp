@@ -78,7 +78,7 @@ std::vector<Case> damaged_logs() {
       reported("index_that_computes", "status", 4, sql("CREATE INDEX i ON runs(abs(grains))"),
                "'i'", kBackup),
       reported("value_of_70_MB", "status", 4,
-               sql("UPDATE runs SET error = printf('%.*c', 70000000, 'x')"), "larger than 64 MiB",
+               sql("UPDATE runs SET error = printf('%.*c', 70000000, 'x')"), "exceeds 64 MiB",
                kBackup),
   };
 }
