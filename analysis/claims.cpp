@@ -153,8 +153,9 @@ Verdict at_looks(const ClaimSpec& claim, Claim stated, const ClaimSides& sides,
   };
   if (seeds.empty()) return decided_by(claim, stated, sides.runs[0], sides.runs[1]);
   std::vector<std::size_t> looks = frame.looks;
-  std::erase_if(looks, [&](std::size_t look) { return look > seeds.size(); });
   if (looks.empty()) looks = {seeds.size()};
+  for (std::size_t& look : looks) look = std::min(look, seeds.size());
+  looks.erase(std::ranges::unique(looks).begin(), looks.end());
   seeds.resize(looks.back());
   const auto first_pending =
       std::ranges::find_if(seeds, [&](std::uint64_t seed) { return pending.contains(seed); });
@@ -297,12 +298,16 @@ std::vector<std::string> problems_of_sides(const ClaimSpec& claim, const ClaimSi
                                    remedy_for(sides.runs[k])));
   }
   const auto& [a, b] = sides.runs;
-  if (problems.empty() && !a.empty() && !b.empty() && a.front()->stage.id == b.front()->stage.id) {
-    problems.emplace_back(
-        "both sides of `between` select the same runs, so the difference is exactly zero. Choose "
-        "two different variants.");
-  }
-  return problems;
+  const auto shared = static_cast<std::size_t>(std::ranges::count_if(b, [&](const FrameRun* run) {
+    return std::ranges::any_of(
+        a, [&](const FrameRun* other) { return other->stage.id == run->stage.id; });
+  }));
+  if (!problems.empty() || shared == 0) return problems;
+  return {shared == b.size()
+              ? "both sides of `between` select the same runs, so the difference is exactly zero. "
+                "Choose two different variants."
+              : fmt::format("{} on both sides of `between`. Select sides that share no run.",
+                            shared == 1 ? "1 run is" : fmt::format("{} runs are", shared))};
 }
 
 std::vector<ClaimSpec> each_of(const ClaimSpec& claim, std::span<const FrameRun> runs) {

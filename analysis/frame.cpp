@@ -33,7 +33,8 @@ bool is_within(const nlohmann::json& value, const nlohmann::json& wanted) {
   if (wanted.is_array()) {
     return std::ranges::any_of(wanted, [&](const auto& one) { return is_within(value, one); });
   }
-  if (!value.is_number()) return value == wanted;
+  const bool whole = value.is_number_integer() && wanted.is_number_integer();
+  if (!value.is_number() || whole) return value == wanted;
   const auto number = value.get<double>();
   const auto end = [&](const char* key, double without) {
     return wanted.contains(key) ? wanted[key].get<double>() : without;

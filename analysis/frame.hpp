@@ -112,7 +112,8 @@ const CheckpointMeasures* checkpoint_at(const FrameRun& run, double cycle);
 
 /// Whether the parameters of the run match `where`, such as {"fluid": "still", "amplitude_rad":
 /// [0.04, 0.05], "grains": {"min": 6000}}. A list matches any of its values. A range has `min`,
-/// `max` or both. The relative tolerance of numbers is 1e-6, since a manifest may round them.
+/// `max` or both. The relative tolerance of numbers is 1e-6, since a manifest may round them;
+/// whole numbers must be equal.
 bool has_parameters(const FrameRun& run, const nlohmann::json& where);
 /// The runs whose parameters match `where`. If several experiments share a matching run, only the
 /// run of the first of them is returned.

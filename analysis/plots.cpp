@@ -82,7 +82,10 @@ PlotRuns selected_by(const PlotSpec& plot, std::span<const FrameRun> runs) {
   const PackingGroups packings = by_packing(selection.subtracted);
   const NumberColumn y(plot.y);
   for (const FrameRun* run : all_runs_with(of_runs, runs)) {
-    if (std::ranges::count(selection.subtracted, run) > 0) continue;
+    const bool subtracted = std::ranges::any_of(selection.subtracted, [&](const FrameRun* other) {
+      return other->stage.id == run->stage.id;
+    });
+    if (subtracted) continue;
     const auto same = packings.find(packing_of(*run));
     if (!plot.minus.empty() && same == packings.end()) {
       selection.alone.push_back(run);

@@ -98,8 +98,9 @@ void add_checkpoints(const Store& store, const Figure& figure, const MeasureOpti
     }
     if (asked.made.empty() || asked.missing.empty()) continue;
     Lack& lack = lacks[engine_of(run.stage.resolved) == EngineKind::lammps];
-    lack.checkpoints += asked.missing.size();
-    lack.runs.insert(run.stage.id.substr(0, 8));
+    if (lack.runs.insert(run.stage.id.substr(0, 8)).second) {
+      lack.checkpoints += asked.missing.size();
+    }
   }
   if (last_only) return;
   std::erase_if(collected.runs, [](const FrameRun& run) { return run.checkpoints.empty(); });
@@ -157,6 +158,7 @@ PlannedRuns plan_runs(const Manifest& manifest, const std::string& scale_name) {
       for (const std::uint64_t seed : planned.seeds | std::views::take(variants[k].seeds)) {
         planned.runs.push_back(runs[k]);
         planned.runs.back().place.seed = seed;
+        planned.runs.back().stage.id += fmt::format(" seed {}", seed);
       }
     }
   }
@@ -415,9 +417,7 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
       if (all_seeds) add_planned(manifest, collected);
     }
     if (!wanted.figure.of.empty()) join(wanted.figure.of, collected);
-    for (const FrameRun* run : all_runs_with(nlohmann::json::object(), collected.runs)) {
-      collected.variants.push_back(run->place.swept);
-    }
+    for (const FrameRun& run : collected.runs) collected.variants.push_back(run.place.swept);
     std::erase_if(collected.runs, [&](const FrameRun& run) {
       return wanted.figure.uses && !wanted.figure.uses(run);
     });

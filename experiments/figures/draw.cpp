@@ -239,12 +239,13 @@ void make_of_runs(const Store& store, const WantedFigure& wanted, const FigureOp
                        "in the manifest (`plots`)");
   }
   made.title = title_of(figure, runs);
-  made.runs = runs.size();
+  for (const FrameRun& run : runs) ++made.runs_by_variant[run.name];
+  const std::vector<const FrameRun*> counted_once = all_runs_with(nlohmann::json::object(), runs);
+  made.runs = counted_once.size();
   std::size_t without_interior = 0;
-  for (const FrameRun& run : runs) {
-    made.checkpoints += run.checkpoints.size();
-    ++made.runs_by_variant[run.name];
-    without_interior += std::ranges::any_of(run.checkpoints, [](const CheckpointMeasures& one) {
+  for (const FrameRun* run : counted_once) {
+    made.checkpoints += run->checkpoints.size();
+    without_interior += std::ranges::any_of(run->checkpoints, [](const CheckpointMeasures& one) {
       return one.measures.number("interior_grains") == 0;
     });
   }
@@ -252,7 +253,7 @@ void make_of_runs(const Store& store, const WantedFigure& wanted, const FigureOp
     made.notes.push_back(
         fmt::format("{} of {} had no interior grains (at least 1.5 d from the walls) at some "
                     "checkpoints, so phi and other measures of interior grains have no value there",
-                    without_interior, counted(runs.size(), "run")));
+                    without_interior, counted(made.runs, "run")));
   }
   static_cast<FigureResult&>(made) = figure.make(frame);
   for (Verdict& verdict : made.verdicts) {

@@ -115,9 +115,9 @@ std::vector<std::string> with_members(const Store& store,
       const auto found = members.find(member);
       return found != members.end() && found->second.empty();
     };
-    const std::vector<std::string>& of = members[experiment];
-    std::ranges::copy_if(of, std::back_inserter(all), owns_runs);
-    if (of.empty()) all.push_back(experiment);
+    const std::size_t before = all.size();
+    std::ranges::copy_if(members[experiment], std::back_inserter(all), owns_runs);
+    if (all.size() == before) all.push_back(experiment);  // an empty list would select all runs
   }
   return all;
 }

@@ -129,6 +129,15 @@ std::vector<string_view> split(string_view text, char separator) {
 /// The unit with this name in lower case, or nothing. The micro sign is not the Greek letter.
 std::optional<LengthUnit> unit_of(string_view name) {
   if (name == "\u00b5m" || name == "\u03bcm") return LengthUnit::um;
+  static const std::regex metres("(milli|centi|micro)?met(er|re)s?");
+  const string text(name.substr(0, 64));
+  if (std::smatch found; std::regex_match(text, found, metres)) {
+    const string prefix = found[1];
+    return prefix.empty()      ? LengthUnit::m
+           : prefix == "milli" ? LengthUnit::mm
+           : prefix == "centi" ? LengthUnit::cm
+                               : LengthUnit::um;
+  }
   if (name == "si") return LengthUnit::m;
   return name == "cgs" ? LengthUnit::cm : value_of<LengthUnit>(name);
 }
@@ -148,10 +157,10 @@ Meaning meaning_of(string_view column, bool units, int count = 1) {
   static const string other = "(?!max|min|cut|.*(?:curvature|gyration|ratio))";
   static const std::regex radius(grain + "(?:r|rads?)|rp|" + other + ".*(?:radius|radii).*");
   static const std::regex diameter(grain + "(?:d|dias?|sizes?|sigma)|dp|durchmesser|" +
-                                   "(?:aspherical)?shape[xyz\\[]|" + other + ".*diam(?!o).*");
+                                   "shape[xyz]|" + other + ".*diam(?!o).*");
   static const std::regex velocity(
       "(?!.*(ang|rot|omega|spin|vir|vor))"
-      "((v|mom|speed)[xyz0-9]?|[pu][xyz\\[]|v.{0,3}[xyz]u?|vel.*|[xyz](v|vel|dot)|"
+      "((v|mom|speed)[xyz0-9]?|[pu][xyz\\[]|v(cm|el|lin|avg)?[xyz]u?|vel.*|[xyz](v|vel|dot)|"
       "d([xyzr]|pos)dt|.*(veloc|momenta|momentum).*)");
   static const std::regex position(
       "(pos|positions?|coords?|coordinates?|points?)[xyz0-9\\[]?|[xyz](su?|pos|coord)");
@@ -180,9 +189,11 @@ Meaning meaning_of(string_view column, bool units, int count = 1) {
   meaning.unit = unit;
   for (string text : {stem, component ? stem + '[' : stem, stem + suffix}) {
     std::erase_if(text, [](unsigned char c) { return std::isalnum(c) == 0 && c != '['; });
+    // Columns such as c_p[1] are a stress of each atom, or displacements, in files of LAMMPS.
+    const bool tensor = found.length(1) > 0 && text.size() == 2 && text[1] == '[';
     if (std::regex_match(text, radius)) meaning.factor = 2;
     meaning.first = meaning.factor > 1 || std::regex_match(text, diameter) ? kDiameter
-                    : std::regex_match(text, velocity)                     ? kVx
+                    : std::regex_match(text, velocity) && !tensor          ? kVx
                     : std::regex_match(text, position)                     ? kX
                                                                            : kQuantities;
     if (meaning.first != kQuantities) break;
@@ -193,16 +204,18 @@ Meaning meaning_of(string_view column, bool units, int count = 1) {
 /// Whether a name, such as a key, concerns the box, a unit or the kind of the coordinates.
 bool concerns_geometry(string_view name) {
   static const std::regex geometry(
-      "lattice|box|origin($|[^a-z])|(^|[^a-z]|unit|super|sim)cell(?!_height_d$)|^properties$|"
+      "(^|[^a-z]|super)lattice|(^|[^a-z]|sim|super)box|origin($|[^a-z])|"
+      "(^|[^a-z]|unit|super|sim)cell(?!_height_d$|_?id)|^properties$|"
       "^columns$|^(l|len|length|size)_?[xyz]$|^[xyz]_?(lo|hi|min|max|len|length|size)($|[^a-z])|"
       "^(fractional|scaled|reduced)|^(coords?|coordinates?)($|_?(type|system|mode|style|format))|"
-      "^(?!energy|force|stress|pressure|mass|charge|temp)(.*[^a-z])?"
+      "^(?!energy|force|stress|pressure|mass|charge|temp|formula|angle|density|freq|dipole|virial)"
+      "(.*[^a-z])?"
       "(length|distance|position|velocity|time)?units?"
       "($|_?(of|length|distance|position|velocity|time|system|style))");
   return std::regex_search(lower(name.substr(0, 64)), geometry);  // limits the recursion
 }
 
-/// Whether the text has as many numbers in a row as a box: 3, 6, 9 or 12.
+/// Whether the text has as many numbers in a row as the edges and angles of a box: 6 or 9.
 bool may_be_box(string text) {
   std::ranges::replace_if(
       text, [](char c) { return string_view(",;\"'{}[]()").find(c) != string::npos; }, ' ');
@@ -210,7 +223,7 @@ bool may_be_box(string text) {
   std::size_t row = 0;
   for (const string_view word : split(text, ' ')) {
     const bool number = read_number<double>(word).has_value();
-    if (!number && row > 0 && row <= 12 && row % 3 == 0) return true;
+    if (!number && (row == 6 || row == 9)) return true;
     row = number ? row + 1 : 0;
   }
   return false;
@@ -356,6 +369,17 @@ class PackingReader {
     if (std::ranges::count(not_read_, printable(name)) == 0) not_read_.push_back(printable(name));
   }
 
+  /// The place of the mark that closes the first mark of the text; brackets may be nested.
+  static std::size_t close_of(string_view text, char close) {
+    if (text.front() == close) return text.find(close, 1);
+    int depth = 0;
+    for (std::size_t k = 0; k < std::min<std::size_t>(text.size(), 4096); ++k) {  // limits the time
+      depth += text[k] == text.front() ? 1 : text[k] == close ? -1 : 0;
+      if (depth == 0) return k;
+    }
+    return text.npos;
+  }
+
   /// The pairs KEY=VALUE of a comment, and the text between pairs as values without key. Blanks may
   /// be around `=`, and quotes or brackets around VALUE.
   static std::vector<std::pair<string_view, string_view>> pairs_of(string_view rest) {
@@ -379,7 +403,7 @@ class PackingReader {
       cut(1);
       const bool blank = !cut(rest.find_first_not_of(" \t")).empty();
       const std::size_t mark = rest.empty() ? rest.npos : string_view("\"'{[(").find(rest.front());
-      const std::size_t end = mark == rest.npos ? mark : rest.find("\"'}])"[mark], 1);
+      const std::size_t end = mark == rest.npos ? mark : close_of(rest, "\"'}])"[mark]);
       const string_view word =
           rest.substr(0, end == rest.npos ? rest.find_first_of(" \t,;") : end + 1);
       const bool of_next = blank && end == rest.npos && word.find('=') != word.npos;  // "a= b=1"
@@ -398,13 +422,16 @@ class PackingReader {
                .more = "further columns"};
     static constexpr string_view keys[] = {"Lattice", "Origin", "Properties", "length_unit",
                                            "velocity_unit"};
-    static const std::regex other("pbc|.*(stress|virial|strain|dipole|force|field|gravity).*",
-                                  std::regex::icase);
+    static const std::regex other(
+        "pbc|.*(stress|virial|strain|force|field|gravity|polari|moment|magmom).*",
+        std::regex::icase);
     std::map<string_view, string_view> values;
     for (const auto& [key, value] : pairs_of(line_)) {
       const bool box =
           may_be_box(string(value)) && !std::regex_match(string(key.substr(0, 64)), other);
-      if (!box && !concerns_geometry(key)) {
+      // ASE writes unit_cell=conventional beside the lattice.
+      const bool word = key == "unit_cell" && value.find_first_of("0123456789") == value.npos;
+      if (word || (!box && !concerns_geometry(key))) {
         if (key != "pbc" || value != "\"F F T\"") leave(key.empty() ? "comment" : key);
         continue;
       }
@@ -673,12 +700,18 @@ class PackingReader {
         "(?:[\\s=:\"'\\[(]|of|in|are|is|lengths?|distances?|positions?){1,12}|"
         "in\\s{1,9}(?!(?:real|metal|micro|nano|electron|si|lj|cgs)\\b))"
         "(real|metal|micro|nano|electron|si|lj|cgs|m|d|(?:[cmunp]|\xC2\xB5|\xCE\xBC)m|fractional|"
-        "scaled|reduced|(?:milli|centi|micro|nano)?met(?:er|re)s?|angstroms?)\\b(?!\\s*=|-)|"
+        "scaled|reduced(?!\\s{1,9}unit)|(?:milli|centi|micro|nano)?met(?:er|re)s?|angstroms?)\\b"
+        "(?!\\s*=|-|/|\\^)|"
         "\\b(?:fractional|scaled|reduced)\\s{1,9}coord|"
-        "(?:\\b|_)scale[\\s_]?(?:factor)?[\\s=:]{1,9}[0-9.]+",
+        "\\b(?:(?:lattice|length|box|position)_?)?scale(?:_?factor)?=[0-9.]+(?![\\w.])",
         std::regex::icase);
     const string text(line_.substr(0, 20'000));
     for (std::sregex_iterator at(text.begin(), text.end(), unit), end; at != end; ++at) {
+      static const std::regex quantity("(veloc|diam|radi|mass|time|stress)\\w{0,9}\\s{0,9}$",
+                                       std::regex::icase);
+      const auto begin = static_cast<std::size_t>(at->position(0));
+      const std::size_t from = begin - std::min<std::size_t>(begin, 32);
+      if (std::regex_search(text.substr(from, begin - from), quantity)) continue;
       const std::size_t group = (*at)[1].matched ? 1 : 0;
       take_unit(key, line_.substr(static_cast<std::size_t>(at->position(group)),
                                   static_cast<std::size_t>(at->length(group))));

@@ -509,7 +509,7 @@ bool is_rgb(const Node& in) {
 }
 
 bool is_auto(const Field& field, const Node& node) {
-  return takes_auto(field.name) && node.is_scalar() && !node.quoted && node.text == "auto";
+  return takes_auto(field.name) && node.is_scalar() && node.text == "auto";
 }
 
 // Translates an expression from other notations: phi**2 to phi^2. "" if the result is not valid.
@@ -1469,8 +1469,10 @@ struct Reader {
     const std::vector<string> of_against = names_in(claim.against);
     reject_value_if(std::ranges::count(of_against, "cycle") > 0, against,
                     "is the same for all runs, because it is taken at the first checkpoint",
-                    "For a slope over cycles, write `estimator: slope_over_cycles` and `cycles: "
-                    "[1, 15]`, without `against`.");
+                    claim.estimator == "slope"
+                        ? "For a slope over cycles, write `estimator: slope_over_cycles` and "
+                          "`cycles: [1, 15]`, without `against`."
+                        : "Use a parameter or a measure, such as interior_grains.");
     if (claim.compare.empty() || problems.size() > problems_before) return;
     const auto times = {"at_cycle", "cycles", "phi", "reaches"};
     const auto stated =

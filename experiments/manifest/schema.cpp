@@ -98,11 +98,14 @@ std::string number_remedy(const Field& field, const std::string& text) {
   static const std::regex thousands(",(?=[0-9]{3}$)"), comma(",");
   plain = field.whole ? std::regex_replace(plain, thousands, "")
                       : std::regex_replace(plain, comma, ".");
+  // "1,500" may be 1500 or 1.5.
+  static const std::regex either("(-?[1-9][0-9]{0,2}),([0-9]{3})( *[^0-9,.]+)?");
+  const bool two = !field.whole && std::regex_match(text, either);
+  const auto thousand = two ? parse_real(std::regex_replace(text, either, "$1$2")) : std::nullopt;
   if (parse_real(plain)) {
-    static const std::regex either("([1-9][0-9]{0,2}),([0-9]{3})");
-    const std::string whole = std::regex_replace(text, either, "$1$2 or ");
+    const bool both = thousand && field.range.contains(*thousand);
     return fmt::format("Write {}{}. A number has a decimal point and no separators.",
-                       !field.whole && whole.ends_with(' ') ? whole : "", plain);
+                       both ? fmt::format("{} or ", *thousand) : "", plain);
   }
   if (is_expression(text) && names_in(text).empty() && wrong_in_expression(text).empty()) {
     const double value = evaluator_of(text)({});
@@ -112,7 +115,7 @@ std::string number_remedy(const Field& field, const std::string& text) {
   const auto number = parse_real(plain.substr(0, end));
   if (!number) return takes(field);
   const auto factor = unit_factor(plain.substr(end), field.unit);
-  if (factor && field.range.contains(*number * *factor)) {
+  if (factor && !two && field.range.contains(*number * *factor)) {
     return fmt::format("Write {:.12g}, in {}.", *number * *factor, field.unit);
   }
   return fmt::format("Write the number alone{}.",

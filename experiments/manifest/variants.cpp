@@ -99,8 +99,11 @@ Parts parts_of(const std::string& list) {
     part = same_spelling(part);
     const std::size_t equal = std::min(part.find('='), part.size());
     const std::string value = part.substr(std::min(equal + 1, part.size()));
+    const auto whole = read_number<std::uint64_t>(value);
     const auto number = read_number<double>(value);
-    parts.emplace(part.substr(0, equal), number ? json(*number) : json(value));
+    parts.emplace(part.substr(0, equal), whole    ? json(*whole)
+                                         : number ? json(*number)
+                                                  : json(value));
   }
   return parts;
 }

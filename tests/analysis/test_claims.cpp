@@ -465,7 +465,7 @@ TEST(PlannedLooks, UseSeedsThatBothSidesHave) {
                         .between = {{{{"fluid", "still"}}, {{"fluid", "cell"}}}},
                         .margin = 0.001};
   const Verdict verdict = claim_figure(claim).make(frame).verdicts.at(0);
-  EXPECT_EQ(verdict.looks, (std::vector<std::size_t>{3}));
+  EXPECT_EQ(verdict.looks, (std::vector<std::size_t>{3, 4})) << "the last look has all of them";
   EXPECT_EQ(verdict.look, 3U);
   EXPECT_EQ(verdict.ruling, Ruling::agrees);
 }

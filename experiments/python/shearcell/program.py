@@ -221,7 +221,8 @@ def _files(manifest: Manifest | Iterable[Manifest]) -> Iterator[tuple[list[PathL
         for one in manifest if several else [manifest]:
             if isinstance(one, Mapping):
                 text = json.dumps(_plain(one, ""), indent=1, ensure_ascii=False) + "\n"
-            elif isinstance(one, str) and re.search(r"^\s*\{|: |\n", one):
+            elif isinstance(one, str) and ("\n" in one or (
+                    re.search(r"^\s*\{|: ", one) and not os.path.exists(os.path.expanduser(one)))):
                 text = one
             elif isinstance(one, (str, os.PathLike)) and one != "":
                 paths.append(os.path.expanduser(one))
