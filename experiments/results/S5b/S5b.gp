@@ -32,10 +32,10 @@ $series3 << EOD
 11400,0.64632,,0.00032
 18200,0.64577,,0.00039
 EOD
-plot keyentry with linespoints lc rgb '#0072b2' lw 1.2 pt 5 ps 0.4 title '6 to 11 runs', \
+plot keyentry with linespoints lc rgb '#0072b2' lw 1.2 pt 5 ps 0.4 title '6 to 12 runs', \
      keyentry with lines lc rgb '#000000' lw 1.2 dt 2 title 'the supplement 0.646 ± 0.001', \
      keyentry with lines lc rgb '#888888' lw 1.2 dt 2 title 'experiment, {/:Italic A} = 0.01: 0.645', \
-     keyentry with points lc rgb '#000000' lw 1.2 pt 6 ps 0.4 title 'rate of smaller cells', \
+     keyentry with points lc rgb '#000000' lw 1.2 pt 6 ps 0.4 title 'prediction from smaller cells', \
      $series3 every 1 using 1:($2-$4):(0):($2+$4-($2-$4)) with vectors heads size screen 0.00615384615,90 fixed lc rgb '#000000' lw 0.7 notitle, \
      $series3 every 1 using 1:2 with points lc rgb '#000000' lw 1.2 pt 6 ps 0.4 notitle, \
      $series0 every 1 using 1:($2-$4):(0):($2+$4-($2-$4)) with vectors heads size screen 0.00615384615,90 fixed lc rgb '#0072b2' lw 0.7 notitle, \

@@ -30,8 +30,8 @@ $series1 << EOD
 0.04,0.647069089,,0.00203964783
 0.05,0.646449837,,0.000314596568
 EOD
-plot keyentry with linespoints lc rgb '#0072b2' lw 1.2 pt 5 ps 0.4 title 'gravity (4 to 11 runs)', \
-     keyentry with linespoints lc rgb '#d55e00' lw 1.2 pt 6 ps 0.4 title 'no gravity (2 to 11 runs)', \
+plot keyentry with linespoints lc rgb '#0072b2' lw 1.2 pt 5 ps 0.4 title 'gravity (6 to 12 runs)', \
+     keyentry with linespoints lc rgb '#d55e00' lw 1.2 pt 6 ps 0.4 title 'no gravity (4 to 12 runs)', \
      keyentry with lines lc rgb '#000000' lw 1.2 dt 2 title 'the supplement 0.646 ± 0.001', \
      $series1 every 1 using 1:($2-$4):(0):($2+$4-($2-$4)) with vectors heads size screen 0.00615384615,90 fixed lc rgb '#d55e00' lw 0.7 notitle, \
      $series1 every 1 using 1:2 with linespoints lc rgb '#d55e00' lw 1.2 pt 6 ps 0.4 notitle, \

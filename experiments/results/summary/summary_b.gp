@@ -24,10 +24,11 @@ set arrow from graph 0, first 0.645 to graph 1, first 0.645 nohead dt 2 lc rgb '
 set arrow from graph 0, first 0.647 to graph 1, first 0.647 nohead dt 2 lc rgb '#000000'
 $series0 << EOD
 5200,0.646945985,,0.000352630558
+7900,0.64660154,,0.000359838519
 11400,0.645926316,,0.000646336318
 18200,0.645158536,,0.000430394366
 EOD
-plot keyentry with linespoints lc rgb '#0072b2' lw 1.2 pt 5 ps 0.4 title '6 to 9 runs', \
+plot keyentry with linespoints lc rgb '#0072b2' lw 1.2 pt 5 ps 0.4 title '6 to 12 runs', \
      keyentry with lines lc rgb '#000000' lw 1.2 dt 2 title 'the supplement 0.646 ± 0.001', \
      $series0 every 1 using 1:($2-$4):(0):($2+$4-($2-$4)) with vectors heads size screen 0.00615384615,90 fixed lc rgb '#0072b2' lw 0.7 notitle, \
      $series0 every 1 using 1:2 with linespoints lc rgb '#0072b2' lw 1.2 pt 5 ps 0.4 notitle
