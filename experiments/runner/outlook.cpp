@@ -24,7 +24,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kMostListed = 1'000'000;  // longest accepted list, as a forged store may have any
+constexpr std::size_t kMostListed = 1'000'000;  // longer lists are refused (forged stores)
 constexpr double kMostCounted = 10'000;         // larger numbers of checkpoints are estimated
 
 std::optional<Until> until_of(const Stage& stage, const Ask& ask) try {
