@@ -498,5 +498,28 @@ TEST(RunsWith, CountARunOfTwoExperimentsOnce) {
   EXPECT_EQ(runs_with({{"experiment", "second"}}, runs), (std::vector{&std::as_const(runs[2])}));
 }
 
+TEST(IsWithin, ComparesWholeNumbersExactly) {
+  EXPECT_FALSE(is_within(4560001, 4560000));
+  EXPECT_TRUE(is_within(4560000, 4560000U));
+  EXPECT_TRUE(is_within(0.05000000001, 0.05));
+}
+
+TEST(ClaimSides, ShareNoRun) {
+  std::vector<FrameRun> runs = with_seeds({1, 2, 3}, 0.6);
+  for (FrameRun& run : with_seeds({3, 4}, 0.6)) runs.push_back(run);
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    runs[k].place.experiment = runs[k].place.swept["experiment"] = k < 3 ? "first" : "second";
+    runs[k].place.variant += runs[k].place.experiment;
+  }
+  const ClaimSpec claim{.id = "own",
+                        .compare = "phi",
+                        .cycles = {{1, 1}},
+                        .between = {{{{"experiment", "first"}}, {{"experiment", "second"}}}},
+                        .margin = 0.001};
+  EXPECT_EQ(problems_of_sides(claim, sides_of(claim, runs), false),
+            (std::vector<std::string>{
+                "1 run is on both sides of `between`. Select sides that share no run."}));
+}
+
 }  // namespace
 }  // namespace shearcell::test
