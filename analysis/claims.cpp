@@ -26,6 +26,13 @@ bool is_of(const ClaimSpec& claim, const FrameRun& run) {
           (!has_one_side(claim) && has_parameters(run, claim.between[1])));
 }
 
+/// The parameters that a run of side `k` must have.
+nlohmann::json selected_on(const ClaimSpec& claim, std::size_t k) {
+  nlohmann::json where = claim.where;
+  where.update(claim.between.at(k));
+  return where;
+}
+
 /// Returns the estimated quantity in words, for sentences.
 std::string words_of(const ClaimSpec& claim) {
   const Estimator& estimator = estimator_of(claim);
@@ -119,13 +126,12 @@ Verdict decided_by(const ClaimSpec& claim, const Claim& stated, RunGroup a, RunG
 /// A look (interim analysis) at n seeds uses the runs of the first n seeds that both sides have,
 /// after these have ended. Returns the verdict of the first look that decides the claim. If no
 /// looks are planned, there is one look, at all seeds of either side. Until a look decides, the
-/// verdict is undecided. Its numbers are then those of the seeds before the first unfinished seed.
-/// Seeds that no look includes are used only in the note.
+/// verdict is undecided. Its numbers then use the seeds before the first unfinished seed. Seeds
+/// that no look includes are used only in the note. `planned`: the sides of Frame::pending.
 Verdict at_looks(const ClaimSpec& claim, Claim stated, const ClaimSides& sides,
-                 const Frame& frame) {
+                 const ClaimSides& planned, const Frame& frame) {
   std::set<std::uint64_t> begun, pending;
   std::array<std::set<std::uint64_t>, 2> of_side;
-  const ClaimSides planned = sides_of(claim, frame.pending);
   for (std::size_t k = 0; k < 2; ++k) {
     for (const FrameRun* run : sides.runs[k]) begun.insert(run->place.seed);
     for (const FrameRun* run : planned.runs[k]) pending.insert(run->place.seed);
@@ -216,8 +222,7 @@ std::optional<Verdict> decide_one(const ClaimSpec& claim, const Frame& frame) {
   }
   if (!problems.empty()) sides.runs = {};
   if (sides.lacks_one && !claim.listed) {
-    nlohmann::json where = claim.where;
-    where.update(claim.between.at(sides.runs[0].empty() ? 0 : 1));
+    const nlohmann::json where = selected_on(claim, sides.runs[0].empty() ? 0 : 1);
     const Estimator& estimator = estimator_of(claim);
     const bool of_cycles = claim.cycles && estimator.scalar != nullptr;
     const Verdict none = decided_by(claim, decided, {}, {});
@@ -228,7 +233,7 @@ std::optional<Verdict> decide_one(const ClaimSpec& claim, const Frame& frame) {
     verdict.waits_for = none.waits_for;
     return verdict;
   }
-  return at_looks(claim, decided, sides, frame);
+  return at_looks(claim, decided, sides, planned, frame);
 }
 
 }  // namespace
@@ -237,9 +242,8 @@ ClaimSides sides_of(const ClaimSpec& claim, std::span<const FrameRun> runs) {
   ClaimSides sides;
   for (std::size_t k = 0; k < (has_one_side(claim) ? 1U : 2U); ++k) {
     const nlohmann::json& where = claim.between.at(k);
-    nlohmann::json all = claim.where;
-    all.update(where);
-    const std::vector<const FrameRun*>& side = sides.runs.at(k) = runs_with(all, runs);
+    const std::vector<const FrameRun*>& side = sides.runs.at(k) =
+        runs_with(selected_on(claim, k), runs);
     const bool named = count_variants(side) == 1 && !side.front()->name.empty();
     if (!where.empty()) sides.names.at(k) = named ? side.front()->name : words_of(where);
     sides.lacks_one = sides.lacks_one || side.empty();
@@ -289,8 +293,7 @@ std::vector<std::string> problems_of_sides(const ClaimSpec& claim, const ClaimSi
     if (variants == 1 || (variants > 1 && (averages || estimator_of(claim).over_variants)) ||
         (variants == 0 && !planned))
       continue;
-    nlohmann::json where = claim.where;
-    where.update(claim.between[k]);
+    const nlohmann::json where = selected_on(claim, k);
     problems.push_back(fmt::format("{}; `{}` must select one variant{}.{}",
                                    where.empty() ? fmt::format("there are {} variants", variants)
                                                  : variants_have(variants, where),
@@ -299,10 +302,9 @@ std::vector<std::string> problems_of_sides(const ClaimSpec& claim, const ClaimSi
                                    remedy_for(sides.runs[k])));
   }
   const auto& [a, b] = sides.runs;
-  const auto shared = static_cast<std::size_t>(std::ranges::count_if(b, [&](const FrameRun* run) {
-    return std::ranges::any_of(
-        a, [&](const FrameRun* other) { return other->stage.id == run->stage.id; });
-  }));
+  const std::set<std::string_view> of_a = stage_ids(a);
+  const auto shared = static_cast<std::size_t>(
+      std::ranges::count_if(b, [&](const FrameRun* run) { return of_a.contains(run->stage.id); }));
   if (!problems.empty() || shared == 0) return problems;
   return {shared == b.size()
               ? "both sides of `between` select the same runs, so the difference is exactly zero. "

@@ -75,6 +75,12 @@ std::vector<const FrameRun*> runs_with(const nlohmann::json& where,
   return count_variants(found) > 1 && count_variants(as_stated) == 1 ? as_stated : found;
 }
 
+std::set<std::string_view> stage_ids(RunGroup runs) {
+  std::set<std::string_view> ids;
+  for (const FrameRun* run : runs) ids.insert(run->stage.id);
+  return ids;
+}
+
 const std::string& packing_of(const FrameRun& run) {
   return run.packing.empty() ? run.stage.id : run.packing;
 }

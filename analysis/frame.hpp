@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -131,6 +132,7 @@ std::vector<const FrameRun*> pointers(std::span<const FrameRun> runs);
 std::map<double, std::vector<const FrameRun*>> runs_by(std::span<const FrameRun> runs,
                                                        const std::string& parameter);
 std::size_t count_variants(RunGroup runs);
+std::set<std::string_view> stage_ids(RunGroup runs);
 
 /// Id of the packing from which the run started; without a packing, id of the run. Runs with the
 /// same packing are not independent.

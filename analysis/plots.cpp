@@ -80,12 +80,10 @@ PlotRuns selected_by(const PlotSpec& plot, std::span<const FrameRun> runs) {
   of_runs.erase("cycle");
   if (!plot.minus.empty()) selection.subtracted = runs_with(plot.minus, runs);
   const PackingGroups packings = by_packing(selection.subtracted);
+  const std::set<std::string_view> subtracted = stage_ids(selection.subtracted);
   const NumberColumn y(plot.y);
   for (const FrameRun* run : all_runs_with(of_runs, runs)) {
-    const bool subtracted = std::ranges::any_of(selection.subtracted, [&](const FrameRun* other) {
-      return other->stage.id == run->stage.id;
-    });
-    if (subtracted) continue;
+    if (subtracted.contains(run->stage.id)) continue;
     const auto same = packings.find(packing_of(*run));
     if (!plot.minus.empty() && same == packings.end()) {
       selection.alone.push_back(run);

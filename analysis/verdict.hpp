@@ -87,7 +87,7 @@ Verdict decide(const Claim& claim, std::string quantity, const std::optional<Est
 /// The number of verdicts with each ruling. Rulings that do not occur are left out.
 std::map<Ruling, std::size_t> rulings_of(std::span<const Verdict> verdicts);
 
-/// The rulings in words, such as "1 agrees, 1 refuted"; "" if there are none.
+/// The rulings in words, such as "1 agrees, 1 refuted"; "" without verdicts.
 std::string headline_of(const std::map<Ruling, std::size_t>& rulings);
 
 /// Sets the ruling to undecided, unless it is undecidable.

@@ -135,7 +135,7 @@ struct PruneTask {
   std::uint16_t* other_slots = nullptr;         ///< one entry per block, like the next two arrays
   std::uint16_t* moving_wall_slots = nullptr;
   std::uint8_t* near = nullptr;
-  std::uint8_t* grain_near = nullptr;  ///< like `near`, but for each grain and spare lane
+  std::uint8_t* grain_near = nullptr;  ///< as `near`, for each grain and each spare lane
   std::int32_t padding = 0;
   double depth = 0, per_depth = 0;
 };

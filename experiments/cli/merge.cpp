@@ -10,12 +10,6 @@
 namespace shearcell::cli {
 namespace {
 
-/// Notes on those runs of the store that are left out of figures and tables.
-std::set<std::string> left_out(const Store& store) {
-  const std::vector<std::string> notes = newest_runs(select_runs(store, {})).notes;
-  return {notes.begin(), notes.end()};
-}
-
 void merge(const std::vector<std::string>& sources, Context& context) {
   for (const std::string& source : sources) {  // checks all sources before a store is created
     if (!source.empty() && std::filesystem::exists(std::filesystem::path(source) / "store.sqlite"))
@@ -23,10 +17,14 @@ void merge(const std::vector<std::string>& sources, Context& context) {
     throw NotFound(fmt::format("'{}': this folder contains no store", source));
   }
   Store store(context.store, Access::create);
-  std::set<std::string> known = left_out(store);
+  std::set<std::string> known;  // notes on runs that figures and tables leave out
+  const auto add_known = [&](const Store& one) {
+    for (std::string& note : newest_runs(select_runs(one, {})).notes) known.insert(std::move(note));
+  };
+  add_known(store);
   for (const std::string& source : sources) {
     try {
-      known.merge(left_out(Store(source, Access::read)));
+      add_known(Store(source, Access::read));
     } catch (const std::exception&) {
       // merge_stores() reports the error.
     }
@@ -37,12 +35,13 @@ void merge(const std::vector<std::string>& sources, Context& context) {
     print_stderr("no measures were copied from {}: {}\n", finding.subject, finding.message);
     fail(context, finding.severity == Finding::Severity::error ? kStoreDamaged : kOtherError);
   }
-  for (const std::string& note : left_out(store)) {
+  const NewestRuns newest = newest_runs(select_runs(store, {}));
+  for (const std::string& note : std::set(newest.notes.begin(), newest.notes.end())) {
     if (known.contains(note)) continue;
-    const bool edited = note.find(" of manifest version ") != std::string::npos;
-    warn(context, note + (edited ? ". To show all runs, run one manifest that lists all of them; "
-                                   "only missing runs are computed"
-                                 : ""));
+    const bool older = newest.notes_on_older_versions.contains(note);
+    warn(context, note + (older ? ". To show all runs, run one manifest that lists all of them; "
+                                  "only missing runs are computed"
+                                : ""));
   }
   if (context.json) {
     const auto facts = [](const MergeReport& report) -> nlohmann::json {

@@ -80,7 +80,7 @@ void measure_runs(const Store& store, std::vector<FrameRun>& runs,
                   MeasureOutcome& outcome);
 
 struct CollectedRuns : Frame {
-  ReadManifests manifests;  ///< WantedFigure::manifests or, if that is null, those of the store
+  ReadManifests manifests;  ///< WantedFigure::manifests; if these are null, the store's manifests
   std::string scale;        ///< the scale of all runs: a figure never mixes scales
   /// Messages on runs that were left out, on unfinished runs and on missing checkpoints.
   std::vector<std::string> notes;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,8 @@ std::vector<Run> select_runs(const Store& store, const RunSelection& selection);
 struct NewestRuns {
   std::vector<Run> runs;           ///< sorted by experiment, scale, variant and seed
   std::vector<std::string> notes;  ///< runs that are left out, or shown without their last cycles
+  /// The notes on runs that the newest version of their manifest no longer lists.
+  std::set<std::string> notes_on_older_versions;
 };
 
 /// Returns the runs that figures and tables show. These are, for each experiment and scale, the

@@ -83,7 +83,7 @@ nlohmann::json overrides(std::string_view text, const Place& place, const Ask& a
   const Scale& stated = scale_of(manifest, place.scale);
   for (const Variant& variant : variants_of(stated)) {
     const std::uint64_t cycles = target_cycles(variant.parameters);
-    const bool is_it = variant.swept.empty() || selects({variant.swept, "", {}}, place.swept);
+    const bool is_it = has_values(place.swept, variant.swept);
     if (cycles == ask.target_cycles || !is_it) continue;
     add("cycles", ask.target_cycles, cycles);
     break;

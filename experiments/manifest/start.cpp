@@ -143,7 +143,7 @@ const Stage& recorded_run(const Manifest& manifest, const Scale& scale, const Va
     return m.newest && m.place.experiment == start.experiment &&
            scale_name(m.place.scale) == scale_name(scale_of_start) &&
            m.place.seed == variant.parameters.start_seed &&
-           (start.variant.empty() || selects({start.variant, "", {}}, m.place.swept));
+           has_values(m.place.swept, start.variant);
   };
   std::vector<const Stage*> found;
   for (const Stage& stage : known) {

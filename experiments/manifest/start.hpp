@@ -20,7 +20,7 @@ namespace shearcell {
 /// Returns the run in `known` from which the variant starts. If several runs fit the key `start`,
 /// selects the run with the variant's values of the keys that both experiments sweep. Throws
 /// ManifestError if no run or several runs remain, if the run has no checkpoint at the start cycle,
-/// or if its cell or grains differ from those of the variant.
+/// or if the variant has another cell or other grains.
 const Stage& recorded_run(const Manifest& manifest, const Scale& scale, const Variant& variant,
                           std::span<const Stage> known);
 

@@ -238,11 +238,14 @@ std::vector<Variant> variants_of(const Scale& scale) {
   return variants;
 }
 
-bool selects(const VariantLabel& label, const json& variant) {
-  if (label.where.empty()) return false;
-  return std::ranges::all_of(label.where.items(), [&](const auto& item) {
+bool has_values(const json& variant, const json& where) {
+  return std::ranges::all_of(where.items(), [&](const auto& item) {
     return is_within(member_of(variant, item.key().c_str()), item.value());
   });
+}
+
+bool selects(const VariantLabel& label, const json& variant) {
+  return !label.where.empty() && has_values(variant, label.where);
 }
 
 std::vector<json> swept_in(std::span<const Variant> variants) {

@@ -66,6 +66,8 @@ class Filter {
 
 /// Whether the label applies to the variant, an object of swept keys and values (is_within()).
 bool selects(const VariantLabel& label, const nlohmann::json& variant);
+/// Whether the variant, an object of swept keys and values, has the values `where` (is_within()).
+bool has_values(const nlohmann::json& variant, const nlohmann::json& where);
 
 /// Variant::swept of each variant.
 std::vector<nlohmann::json> swept_in(std::span<const Variant> variants);

@@ -64,7 +64,8 @@ void check_stage(const Stage& stage) {
 }
 
 /// Steps at which the run may have been completed. Each completed attempt gives two steps, which
-/// can differ after a merge: that of its last checkpoint, and the largest step of the run so far.
+/// can differ after a merge: the step of its last checkpoint, and the largest step of the run so
+/// far.
 std::set<std::uint64_t> completed_steps(const Store& store, const std::string& run) {
   const RunLineage stage = run_lineage(store, run).back();
   std::set<std::uint64_t> steps;
