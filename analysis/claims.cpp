@@ -244,8 +244,8 @@ ClaimSides sides_of(const ClaimSpec& claim, std::span<const FrameRun> runs) {
     const nlohmann::json& where = claim.between.at(k);
     const std::vector<const FrameRun*>& side = sides.runs.at(k) =
         runs_with(selected_on(claim, k), runs);
-    const bool named = count_variants(side) == 1 && !side.front()->name.empty();
-    if (!where.empty()) sides.names.at(k) = named ? side.front()->name : words_of(where);
+    const std::string name = shared_name(side);
+    if (!where.empty()) sides.names.at(k) = name.empty() ? words_of(where) : name;
     sides.lacks_one = sides.lacks_one || side.empty();
   }
   return sides;

@@ -75,6 +75,10 @@ std::vector<const FrameRun*> runs_with(const nlohmann::json& where,
   return count_variants(found) > 1 && count_variants(as_stated) == 1 ? as_stated : found;
 }
 
+std::string shared_name(RunGroup runs) {
+  return count_variants(runs) == 1 ? runs.front()->name : "";
+}
+
 std::set<std::string_view> stage_ids(RunGroup runs) {
   std::set<std::string_view> ids;
   for (const FrameRun* run : runs) ids.insert(run->stage.id);

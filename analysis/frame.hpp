@@ -133,6 +133,8 @@ std::map<double, std::vector<const FrameRun*>> runs_by(std::span<const FrameRun>
                                                        const std::string& parameter);
 std::size_t count_variants(RunGroup runs);
 std::set<std::string_view> stage_ids(RunGroup runs);
+/// The name of the variant of the runs; "" if they have no name or belong to several variants.
+std::string shared_name(RunGroup runs);
 
 /// Id of the packing from which the run started; without a packing, id of the run. Runs with the
 /// same packing are not independent.

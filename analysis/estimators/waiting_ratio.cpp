@@ -18,12 +18,6 @@ std::string wait_in_words(std::span<const Waiting> runs) {
                      std::ranges::count(runs, false, &Waiting::observed), runs.size());
 }
 
-/// The name of the side's variant and a colon. `other`: the name if the side has several variants.
-std::string side_in_words(RunGroup runs, const std::string& other) {
-  const bool named = count_variants(runs) == 1 && !runs.front()->name.empty();
-  return (named ? runs.front()->name : other) + ": ";
-}
-
 /// The event whose cycles the claim compares, in words: "phi >= 0.64" or "the onset".
 std::string event_of(const ClaimSpec& claim) {
   return claim.reaches ? fmt::format("{} >= {}", claim.compare, *claim.reaches) : "the onset";
@@ -77,8 +71,9 @@ Verdict compare_waits(const Claim& claim, const std::string& event,
   const std::size_t runs = std::min(a.size(), b.size());
   std::string note;
   if (runs > 0) {
-    note = side_in_words(first, "first") + wait_in_words(a) + "; " +
-           side_in_words(second, "second") + wait_in_words(b);
+    const std::string names[] = {shared_name(first), shared_name(second)};
+    note = fmt::format("{}: {}; {}: {}", names[0].empty() ? "first" : names[0], wait_in_words(a),
+                       names[1].empty() ? "second" : names[1], wait_in_words(b));
   }
   if (runs == 0) {
     note = no_group;
