@@ -162,21 +162,6 @@ Event read_event(const sqlite::Statement& row) {
   return e;
 }
 
-/// Says in words which field of an event was changed. The neighbouring events give the expected
-/// value of a field. If the hash is valid with this value, the field was changed.
-std::string change_of(const Event& event, const std::string& prev_hash, std::uint64_t version,
-                      const std::optional<Event>& next) {
-  Event repaired = event;
-  repaired.prev_hash = prev_hash;
-  if (event_hash(repaired) == event.hash) return "prev_hash was changed";
-  repaired = event;
-  repaired.version = version;
-  if (event_hash(repaired) == event.hash) return "version was changed";
-  if (next && next->prev_hash == event_hash(event)) return "hash was changed";
-  return "its hash does not match its content: stream, type, schema, recorded_at or payload was "
-         "changed";
-}
-
 }  // namespace
 
 sqlite::Database open_database(const std::filesystem::path& file, Access access) {
@@ -298,34 +283,29 @@ void EventLog::for_each(const std::function<void(const Event&)>& visit) const {
 }
 
 std::optional<ChainFault> EventLog::verify_chain() const {
-  sqlite::Statement query(database_, std::string(kSelect) + "ORDER BY seq");
-  const auto read_next = [&query]() -> std::optional<Event> {
-    if (!query.step()) return std::nullopt;
-    return read_event(query);
-  };
+  std::optional<ChainFault> first;
   std::map<std::string, std::uint64_t> versions;
   Head last{.seq = 0, .hash = zeros()};
-  for (std::optional<Event> event = read_next(); event;) {
-    const auto fault = [&](const std::string& message) {
-      return ChainFault{event->seq, fmt::format("event {} ({} of {}): {}", event->seq, event->type,
-                                                event->stream, message)};
-    };
-    if (event->seq != last.seq + 1) {
-      return fault(fmt::format("event {} is missing here", last.seq + 1));
+  for_each([&](const Event& event) {
+    if (first) return;
+    const std::uint64_t version = ++versions[event.stream];
+    std::string fault;
+    if (event.seq != last.seq + 1) {
+      fault = fmt::format("event {} is missing here", last.seq + 1);
+    } else if (event_hash(event) != event.hash) {
+      fault = "its hash does not match its content: one of its fields was changed";
+    } else if (event.prev_hash != last.hash) {
+      fault = "prev_hash is not the previous event's hash";
+    } else if (event.version != version) {
+      fault = fmt::format("its version is {}, but should be {}", event.version, version);
     }
-    const std::uint64_t version = ++versions[event->stream];
-    std::optional<Event> next = read_next();
-    if (event_hash(*event) != event->hash) {
-      return fault(change_of(*event, last.hash, version, next));
+    if (!fault.empty()) {
+      first = {event.seq,
+               fmt::format("event {} ({} of {}): {}", event.seq, event.type, event.stream, fault)};
     }
-    if (event->prev_hash != last.hash) return fault("prev_hash is not the previous event's hash");
-    if (event->version != version) {
-      return fault(fmt::format("its version is {}, but should be {}", event->version, version));
-    }
-    last = {.seq = event->seq, .hash = event->hash};
-    event = std::move(next);
-  }
-  return std::nullopt;
+    last = {.seq = event.seq, .hash = event.hash};
+  });
+  return first;
 }
 
 }  // namespace shearcell

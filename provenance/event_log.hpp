@@ -66,7 +66,7 @@ struct Head {
 /// The first event at which the chain is broken.
 struct ChainFault {
   std::uint64_t seq = 0;
-  std::string message;  ///< names the changed field if it can be determined
+  std::string message;
 };
 
 /// The hash of an event: SHA-256 over the text "shearcell event 1", prev_hash and the other fields,

@@ -188,10 +188,7 @@ TEST_F(VerifyTest, FindsAChangedByteOfAnyFieldOfAnyEvent) {
                                   const std::string& original) {
       const std::string where = " WHERE seq = " + std::to_string(e.seq);
       execute("UPDATE events SET " + field + " = " + changed + where);
-      const bool named =
-          field == "version" || field == "prev_hash" || (field == "hash" && e.seq < events_.size());
-      EXPECT_TRUE(
-          names(verify(), event(e.seq), named ? field + " was changed" : "match its content"))
+      EXPECT_TRUE(names(verify(), event(e.seq), "match its content"))
           << e.type << "." << field << " = " << changed;
       execute("UPDATE events SET " + field + " = " + original + where);
       ++changes;
