@@ -107,17 +107,11 @@ void require_known_schema(sqlite::Database& database) {
     refuse("this SQLite database belongs to another program; choose another store folder");
   }
   const std::int64_t version = database.integer("PRAGMA user_version");
-  if (version > kSchemaVersion) {
+  if (version < 1 || version > kSchemaVersion) {
     refuse(
-        fmt::format("the store has schema {}, and this program knows schemas up to {}; use the "
-                    "newer shearcell that wrote it",
+        fmt::format("the store has schema {}, and this program knows the schemas 1 to {}; use the "
+                    "newer shearcell that wrote it, or restore the file from a backup",
                     version, kSchemaVersion));
-  }
-  if (version < 1) {
-    refuse(
-        fmt::format("the store has schema {}, which never existed; restore the file from a "
-                    "backup",
-                    version));
   }
 }
 

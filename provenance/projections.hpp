@@ -40,8 +40,9 @@ void derive_projections(sqlite::Database& database, const EventLog& log,
 /// tables instead of the stored tables of an older schema. Skips events that cannot be applied.
 void shadow_projections(sqlite::Database& database, const EventLog& log);
 
-/// The rows of a table in ascending order, each cell as an SQL literal.
-using TableRows = std::vector<std::vector<std::string>>;
+/// One text for each column: "NAME = VALUE", with all digits of numbers.
+using TableRow = std::vector<std::string>;
+using TableRows = std::vector<TableRow>;  ///< the rows of a table in ascending order
 
 /// All rows of all tables, so that the tables of two databases can be compared.
 std::map<std::string, TableRows> projection_rows(const sqlite::Database& database);

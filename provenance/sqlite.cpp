@@ -284,13 +284,11 @@ std::vector<std::string> Statement::cells() const {
   std::vector<std::string> row;
   for (int column = 0; column < sqlite3_column_count(handle_.get()); ++column) {
     const int type = sqlite3_column_type(handle_.get(), column);  // text() changes the type
-    if (type == SQLITE_FLOAT) {
-      row.push_back(fmt::format("{:a}", f64(column)));  // hexadecimal keeps every bit
-    } else if (type == SQLITE_INTEGER) {
-      row.push_back(text(column));
-    } else {
-      row.push_back(type == SQLITE_NULL ? "NULL" : "'" + text(column) + "'");
-    }
+    const std::string value = type == SQLITE_FLOAT  ? fmt::format("{:a}", f64(column))
+                              : type == SQLITE_NULL ? "NULL"
+                              : type == SQLITE_TEXT ? "'" + text(column) + "'"
+                                                    : text(column);
+    row.push_back(fmt::format("{} = {}", sqlite3_column_name(handle_.get(), column), value));
   }
   return row;
 }

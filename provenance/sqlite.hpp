@@ -116,7 +116,7 @@ class Statement {
     while (step()) found.push_back(read(*this));
     return found;
   }
-  /// The current row as SQL literals with all digits, for comparing rows.
+  /// The columns of the current row as "NAME = VALUE", with all digits, for comparing rows.
   std::vector<std::string> cells() const;
 
  private:

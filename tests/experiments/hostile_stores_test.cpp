@@ -60,7 +60,7 @@ std::vector<Case> damaged_logs() {
                "belongs to another program"),
       reported("newer_schema", "run m.yaml", 4, sql("PRAGMA user_version=99"), "schema 99",
                "use the newer shearcell"),
-      reported("schema_that_never_was", "status", 4, sql("PRAGMA user_version=0"), "never existed",
+      reported("schema_that_never_was", "status", 4, sql("PRAGMA user_version=0"), "has schema 0",
                "from a backup"),
       reported("no_events", "verify", 4, sql("DROP TABLE events"), "no such table: events",
                kBackup),

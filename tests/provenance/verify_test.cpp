@@ -108,8 +108,8 @@ TEST_F(VerifyTest, RebuildRepairsTheTables) {
   const Finding finding = only(verify());
   EXPECT_EQ(finding.subject, "table runs");
   EXPECT_TRUE(has(finding.message, "rebuild"));
-  EXPECT_TRUE(
-      has(finding.message, run_id(1) + "') should have state = 'failed', but has 'completed'"));
+  EXPECT_TRUE(has(finding.message,
+                  run_id(1) + "') should have state = 'failed', but has state = 'completed'"));
   EXPECT_LT(finding.message.size(), 300u);
   execute("DELETE FROM memberships WHERE run = '" + run_id(1) + "'");
   EXPECT_TRUE(names(verify(), "table memberships", "') is missing;"));
