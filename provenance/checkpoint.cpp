@@ -133,8 +133,6 @@ void require_sound(const Checkpoint& c) {
   const auto reject = [](const std::string& why) {
     throw std::invalid_argument("a checkpoint cannot be written: " + why);
   };
-  if (c.run.size() > StoreLimits::text || c.run.find('\0') != std::string::npos)
-    reject("the run id is too long or has a zero byte");
   if (c.state.position.cols() != c.state.velocity.cols()) {
     reject("the numbers of velocities and positions differ");
   }
@@ -151,8 +149,8 @@ void require_sound(const Checkpoint& c) {
   cell_numbers(c.cell, require_finite);
   if (c.observables.size() > StoreLimits::observables) reject("there are too many observables");
   for (const auto& [name, value] : c.observables) {
-    if (name.size() > StoreLimits::text) reject("the name of an observable is too long");
-    if (name.empty() || name == "." || name.find_first_of(std::string("/\0", 2)) != name.npos) {
+    if (name.empty() || name.size() > StoreLimits::text || name == "." ||
+        name.find_first_of(std::string("/\0", 2)) != name.npos) {
       reject("'" + name + "' is not a valid name of an observable");
     }
     require_finite("observable " + name, value);
