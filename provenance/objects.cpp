@@ -75,7 +75,7 @@ std::string ObjectStore::put(std::span<const std::byte> bytes) {
   } catch (const StoreDamaged&) {
     // The object is missing or damaged, so it is written below.
   }
-  replace_file(folder, path, bytes, ".tmp-", Durability::synced);
+  replace_file(folder, path, bytes, true);
   return sha256;
 }
 

@@ -41,22 +41,17 @@ std::vector<std::byte> read_all(const Descriptor& file, std::size_t size,
 /// Calls fsync on a file or folder. Errors are thrown by fail_on().
 void sync(const Descriptor& file, const std::filesystem::path& path);
 
-enum class Durability {
-  renamed,  ///< a reader sees the old file or the complete new file
-  synced    ///< like `renamed`, and the new file survives a power cut
-};
-
 /// Deletes the temporary files and folders that killed programs left in `folder` and, if `below` is
 /// true, in its subfolders. Their names are ".tmp-<pid>-*" or ".*.tmp-<pid>-*". A file or
 /// folder is kept while process <pid> runs or any process, perhaps in a container, has locked it.
 void remove_leftovers(const std::filesystem::path& folder, bool below = false);
 
-/// Writes `bytes` to a temporary file in the open `folder`, named `temporary` + "<pid>-<n>", with
-/// mode 0666 minus umask. Then renames it to the last component of `path`; an existing file or link
-/// is replaced. After an error, deletes the temporary file and throws as fail_on() does.
+/// Writes `bytes` to a temporary file in the open `folder`, named ".tmp-<pid>-<n>", with mode 0666
+/// minus umask. Then renames it to the last component of `path`; an existing file or link is
+/// replaced. If `synced` is true, the new file survives a power cut. After an error, deletes the
+/// temporary file and throws as fail_on() does.
 void replace_file(const Descriptor& folder, const std::filesystem::path& path,
-                  std::span<const std::byte> bytes, const std::string& temporary,
-                  Durability durability);
+                  std::span<const std::byte> bytes, bool synced);
 
 /// Thrown when the output path names a file, folder or link that this program did not make.
 class NotOurs : public std::runtime_error {
