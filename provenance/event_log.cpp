@@ -204,10 +204,6 @@ std::string run_stream(std::string_view run) {
   return fmt::format("run/{}", run);
 }
 
-std::string packing_stream(std::string_view sha256) {
-  return "packing/" + std::string(sha256);
-}
-
 std::optional<std::string> run_of(const Event& event) {
   if (!event.stream.starts_with("run/")) return std::nullopt;
   return event.stream.substr(4);

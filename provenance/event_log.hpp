@@ -43,8 +43,7 @@ struct Event {
   nlohmann::json body() const;
 };
 
-std::string run_stream(std::string_view run);         ///< "run/<id>"
-std::string packing_stream(std::string_view sha256);  ///< "packing/<sha256>"
+std::string run_stream(std::string_view run);  ///< "run/<id>"
 /// The id of the event's run; nothing if the stream does not belong to a run.
 std::optional<std::string> run_of(const Event& event);
 

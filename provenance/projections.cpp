@@ -373,16 +373,15 @@ std::string try_apply(Database& database, const Event& event) {
   try {
     apply(database, event);
     const events::Any decoded = events::decode(event);
-    const auto* manifest = std::get_if<events::ManifestRegistered>(&decoded);
-    const auto is_of = [&](const std::string& stream, const auto& registered) {
-      return event.stream == stream && registered.sha256 == sha256_hex(registered.text);
-    };
-    if (manifest != nullptr && !is_of("manifest/" + manifest->sha256, *manifest)) {
-      return "the SHA-256 of the manifest's text differs from the recorded one";
-    }
-    const auto* packing = std::get_if<events::PackingRegistered>(&decoded);
-    if (packing != nullptr && !is_of(packing_stream(packing->sha256), *packing)) {
-      return "the SHA-256 of the file of grains differs from the recorded one";
+    const auto* text = std::visit(
+        [](const auto& e) -> const events::TextRegistered* {
+          if constexpr (requires { e.text; }) return &e;
+          return nullptr;
+        },
+        decoded);
+    if (text != nullptr && (text->sha256 != sha256_hex(text->text) ||
+                            event.stream.substr(event.stream.find('/') + 1) != text->sha256)) {
+      return "the SHA-256 of the registered text differs from the recorded one";
     }
     return event.recorded_at.empty() ? "it does not say when it was recorded" : "";
   } catch (const StoreDamaged& damage) {
