@@ -256,18 +256,15 @@ StoreDamaged damaged_table(const Database& database, const std::string& why) {
   return StoreDamaged(fmt::format("{}: a derived table {}; run `rebuild`", database.name(), why));
 }
 
-json parse(const Database& database, const std::string& text) {
-  json value = parse_json(text);
-  if (value.is_discarded()) throw damaged_table(database, "holds broken JSON");
-  return value;
-}
-
-std::vector<double> numbers(const Database& database, const std::string& text) {
+/// The value of a cell that holds JSON.
+template <class T>
+T parse(const Database& database, const std::string& text) {
   try {
-    return parse(database, text).get<std::vector<double>>();
+    const json value = parse_json(text);
+    if (!value.is_discarded()) return value.get<T>();
   } catch (const json::exception&) {
-    throw damaged_table(database, "has a value that is not a list of numbers");
   }
+  throw damaged_table(database, "holds broken JSON");
 }
 
 template <class State>
@@ -288,9 +285,9 @@ std::vector<Membership> query_memberships(const Database& database, const std::s
     std::uint64_t newest = 0;
     row.get(run, place.experiment, place.scale, place.variant, place.seed, place.manifest, labels,
             ask.target_cycles, ask.checkpoint_every, ask.ordinal, until, phases, newest);
-    place.swept = parse(database, labels);
-    ask.until = parse(database, until);
-    ask.checkpoint_phases = numbers(database, phases);
+    place.swept = parse<json>(database, labels);
+    ask.until = parse<json>(database, until);
+    ask.checkpoint_phases = parse<std::vector<double>>(database, phases);
     is_newest = newest != 0;
     require_cycles(ask.target_cycles, ask.checkpoint_every);
     return m;
@@ -309,9 +306,8 @@ std::vector<Stage> select_runs(const Database& database, const std::string& rest
     row.get(stage.id, ordinal, stage.parent, stage.kind, resolved, state, stage.grains,
             stage.target_cycles, stage.attempts, stage.cycle, stage.step, stage.state_hash,
             stage.wall_seconds, stage.particle_steps, stage.error, stage.updated_at, ends);
-    stage.ends = parse(database, ends);
-    if (!stage.ends.is_array()) throw damaged_table(database, "has `ends` that are not a list");
-    stage.resolved = parse(database, resolved);
+    stage.ends = parse<json::array_t>(database, ends);
+    stage.resolved = parse<json>(database, resolved);
     require_cycles(stage.target_cycles, 1);
     stage.state = state_of<StageState>(database, state);
     stage.memberships = query_memberships(database, stage.id);
@@ -329,10 +325,7 @@ std::vector<CheckpointRecord> select_checkpoints(const Database& database, const
     row.get(c.run, c.sha256, c.step, c.cycle, c.time_s, c.file, c.size, c.state_hash, observables,
             state, c.seq);
     c.state = state_of<CheckpointState>(database, state);
-    const json values_by_name = parse(database, observables);
-    for (const auto& [name, value] : values_by_name.items()) {
-      if (value.is_number()) c.observables[name] = value.template get<double>();
-    }
+    c.observables = parse<std::map<std::string, double>>(database, observables);
     return c;
   });
 }
@@ -481,7 +474,7 @@ std::vector<FigureRecord> query_figures(const Database& database) {
     FigureRecord figure;
     std::string provenance;
     row.get(figure.name, figure.seq, figure.recorded_at, provenance);
-    figure.provenance = parse(database, provenance);
+    figure.provenance = parse<json>(database, provenance);
     return figure;
   });
 }

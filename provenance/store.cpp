@@ -471,19 +471,19 @@ std::vector<CheckpointRecord> Store::checkpoints(const std::string& id, Listed l
 }
 
 std::vector<std::byte> Store::read_file(const CheckpointRecord& record) const {
-  const auto require_kept = [&] {
-    const std::scoped_lock guard(mutex_);
-    if (!is_pruned_now(database_, record)) return;
-    throw FilePruned(fmt::format(
-        "{}: checkpoint {:.12} (run {:.12}, cycle {:g}) was pruned; restore it with `shearcell "
-        "regenerate {:.12}`",
-        (folder_ / record.file).string(), record.sha256, record.run, record.cycle, record.sha256));
-  };
-  if (record.state == CheckpointState::pruned) require_kept();
   try {
-    return objects_.get(record.sha256, record.size);
+    if (record.state != CheckpointState::pruned) return objects_.get(record.sha256, record.size);
   } catch (const StoreDamaged&) {
-    require_kept();
+  }
+  {
+    const std::scoped_lock guard(mutex_);
+    if (is_pruned_now(database_, record)) {
+      throw FilePruned(fmt::format(
+          "{}: checkpoint {:.12} (run {:.12}, cycle {:g}) was pruned; restore it with `shearcell "
+          "regenerate {:.12}`",
+          (folder_ / record.file).string(), record.sha256, record.run, record.cycle,
+          record.sha256));
+    }
   }
   return objects_.get(record.sha256, record.size);  // the file may have been regenerated meanwhile
 }
