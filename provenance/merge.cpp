@@ -45,44 +45,41 @@ std::string content_key(const Event& event) {
       .hex();
 }
 
-using Step = std::pair<std::string, std::uint64_t>;  // run and step
-
-std::map<Step, std::set<std::string>> states_of(const Database& tables) {
-  std::map<Step, std::set<std::string>> states;
-  for (const CheckpointRecord& record : query_all_checkpoints(tables)) {
-    if (record.state == CheckpointState::rejected) continue;
-    states[{record.run, record.step}].insert(record.state_hash);
-  }
-  return states;
-}
-
-void require_equal_states(const Database& a, const std::string& a_name, const Database& b,
-                          const std::string& b_name) {
-  const auto known = states_of(a);
-  for (const auto& [step, states] : states_of(b)) {
-    const auto same_step = known.find(step);
-    if (same_step == known.end()) continue;
-    const auto is_known = [&](const std::string& state) {
-      return same_step->second.contains(state);
-    };
-    if (std::ranges::any_of(states, is_known)) continue;
-    throw StoreDamaged(fmt::format(
-        "run {} at step {}: {} has state {:.12} and {} has state {:.12}; one of them is wrong. "
-        "Run `shearcell verify --replay` in each store. Nothing was merged",
-        step.first, step.second, a_name, *same_step->second.begin(), b_name, *states.begin()));
-  }
-}
-
-void require_equal_runs(const Database& a, const std::string& a_name, const Database& b,
-                        const std::string& b_name) {
-  for (const Stage& stage : query_stages(b)) {
-    const auto same = query_stage(a, stage.id);
-    if (!same || same_computation(*same, stage)) continue;
-    throw StoreDamaged(
-        fmt::format("run {}: {} and {} have different parameters for this run; one store was "
-                    "changed by hand. Nothing was merged",
-                    stage.id, a_name, b_name));
-  }
+/// Throws StoreDamaged, which names both stores, when two stores hold different states of one run
+/// at the same step, or different runs under one id.
+void require_agreement(const Database& into, const std::string& name,
+                       const std::vector<Source>& sources) {
+  using Step = std::pair<std::string, std::uint64_t>;  // run and step
+  using States = std::set<std::string>;
+  std::map<std::string, std::pair<Stage, std::string>> runs;  // with the name of a store
+  std::map<Step, std::pair<States, std::string>> states;      // with the name of a store
+  const auto compare = [&](const Database& tables, const std::string& store) {
+    for (const Stage& stage : query_stages(tables)) {
+      const auto& [known, other] = runs.try_emplace(stage.id, stage, store).first->second;
+      if (same_computation(known, stage)) continue;
+      throw StoreDamaged(
+          fmt::format("run {}: {} and {} have different parameters for this run; one store was "
+                      "changed by hand. Nothing was merged",
+                      stage.id, other, store));
+    }
+    std::map<Step, States> own;
+    for (const CheckpointRecord& record : query_all_checkpoints(tables)) {
+      if (record.state == CheckpointState::rejected) continue;
+      own[{record.run, record.step}].insert(record.state_hash);
+    }
+    for (auto& [step, found] : own) {
+      auto& [known, other] = states.try_emplace(step, found, store).first->second;
+      if (std::ranges::none_of(found, [&](const auto& state) { return known.contains(state); })) {
+        throw StoreDamaged(fmt::format(
+            "run {} at step {}: {} has state {:.12} and {} has state {:.12}; one of them is wrong. "
+            "Run `shearcell verify --replay` in each store. Nothing was merged",
+            step.first, step.second, other, *known.begin(), store, *found.begin()));
+      }
+      known.merge(found);
+    }
+  };
+  compare(into, name);
+  for (const Source& source : sources) compare(source.tables, source.folder.string());
 }
 
 /// Whether `into` lacks the checkpoint, or has it only as a damaged file that `record` can replace.
@@ -252,20 +249,6 @@ Source read_source(const std::filesystem::path& folder, const std::set<std::stri
                                    folder.string(), event.seq, event.type, why));
   }
   return source;
-}
-
-/// Throws StoreDamaged, which names both stores, when two stores hold different states of one run
-/// at the same step, or different runs under one id.
-void require_agreement(const Database& into, const std::string& name,
-                       const std::vector<Source>& sources) {
-  std::vector<std::pair<std::string, const Database*>> stores = {{name, &into}};
-  for (const Source& source : sources) {
-    for (const auto& [other, tables] : stores) {
-      require_equal_runs(*tables, other, source.tables, source.folder.string());
-      require_equal_states(*tables, other, source.tables, source.folder.string());
-    }
-    stores.emplace_back(source.folder.string(), &source.tables);
-  }
 }
 
 void require_idle(const Store& into) {
