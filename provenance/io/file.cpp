@@ -47,6 +47,11 @@ std::optional<std::string> beginning_of(const fs::path& path, std::size_t most) 
 
 Descriptor::Descriptor(Descriptor&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
 
+Descriptor& Descriptor::operator=(Descriptor&& other) noexcept {
+  std::swap(number_, other.number_);
+  return *this;
+}
+
 Descriptor::~Descriptor() {
   if (number_ >= 0) close(number_);
 }
