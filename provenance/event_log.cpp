@@ -10,7 +10,6 @@
 #include <cerrno>
 #include <cstdio>
 #include <map>
-#include <set>
 #include <string>
 #include <system_error>
 
@@ -48,17 +47,10 @@ CREATE TRIGGER events_are_never_deleted BEFORE DELETE ON events
 BEGIN SELECT RAISE(ABORT, 'events are never deleted'); END;
 )sql";
 
-void create_tables(sqlite::Database& database) {
-  sqlite::WriteTransaction lock(database);
-  // Another process may have created the tables while this process waited for the lock.
-  if (database.integer("SELECT count(*) FROM sqlite_schema") == 0) {
-    database.execute(kEvents);
-    create_projections(database);
-    create_leases(database);
-    database.execute(fmt::format("PRAGMA application_id={}; PRAGMA user_version={};",
-                                 kStoreApplicationId, kSchemaVersion));
-  }
-  lock.commit();
+/// The SQL statements that create the tables of a new store.
+std::string own_tables() {
+  return fmt::format("{}{}{}PRAGMA application_id={}; PRAGMA user_version={};", kEvents,
+                     projection_tables, lease_table, kStoreApplicationId, kSchemaVersion);
 }
 
 /// Creates the log under a temporary name and then renames it, so that a killed program leaves no
@@ -70,7 +62,7 @@ void create_whole(const std::filesystem::path& file) {
   {
     sqlite::Database database(whole, Access::create);
     database.execute("PRAGMA journal_mode=MEMORY");
-    create_tables(database);
+    database.create_tables(own_tables());
   }
   // The folder is synced when the first event is written.
   if (renameat2(AT_FDCWD, whole.c_str(), AT_FDCWD, file.c_str(), RENAME_NOREPLACE) != 0) {
@@ -82,17 +74,17 @@ void create_whole(const std::filesystem::path& file) {
 /// could contain SQL that runs whenever a table is read or written. A missing table causes an error
 /// only when it is used. Derived tables of an older schema may differ, because they are not read.
 void require_own_schema(sqlite::Database& database) {
-  sqlite::Database own = sqlite::Database::in_memory();
-  create_tables(own);
-  own.execute("ANALYZE");  // creates SQLite's statistics tables, which a store may have, too
+  // SQLite's own statistics tables are allowed, too.
+  const std::string own = own_tables() +
+                          "CREATE TABLE sqlite_stat1(tbl,idx,stat);"
+                          "CREATE TABLE sqlite_stat4(tbl,idx,neq,nlt,ndlt,sample);";
   const bool older = database.integer("PRAGMA user_version") < kSchemaVersion;
-  constexpr const char* statements = "SELECT sql, name FROM sqlite_schema WHERE sql IS NOT NULL";
-  std::set<std::string> known;
-  for (sqlite::Statement row(own, statements); row.step();) known.insert(row.text(0));
-  for (sqlite::Statement row(database, statements); row.step();) {
+  sqlite::Statement row(database, "SELECT sql, name FROM sqlite_schema WHERE instr(?, sql) = 0",
+                        own);
+  while (row.step()) {
     const std::string sql = row.text(0), name = row.text(1);
     const bool derived = std::ranges::count(projected_tables, name) > 0;
-    if (known.contains(sql) || (older && derived && sql.starts_with("CREATE TABLE "))) continue;
+    if (older && derived && sql.starts_with("CREATE TABLE ")) continue;
     throw StoreDamaged(fmt::format(
         "{}: the database contains '{}', which is not part of schema {}; restore it from a backup",
         database.name(), name, kSchemaVersion));
@@ -123,7 +115,7 @@ void migrate(sqlite::Database& database) {
   sqlite::WriteTransaction lock(database);
   // Another process may have migrated the store while this process waited for the lock.
   const std::int64_t version = database.integer("PRAGMA user_version");
-  if (version == 1) create_leases(database);
+  if (version == 1) database.execute(lease_table);
   if (version < kSchemaVersion) {
     derive_projections(database, EventLog(database), lock);
     database.execute(fmt::format("PRAGMA user_version={}", kSchemaVersion));
@@ -181,7 +173,7 @@ sqlite::Database open_database(const std::filesystem::path& file, Access access)
                      ": the log is empty, because the creation of this store was interrupted; "
                      "`shearcell run` with a manifest completes it");
     }
-    create_tables(database);
+    database.create_tables(own_tables());
   }
   require_known_schema(database);
   require_own_schema(database);

@@ -13,15 +13,9 @@
 
 namespace shearcell {
 
-namespace {
-
-using nlohmann::json;
-using sqlite::Database;
-using sqlite::Statement;
-
 // `registered` is the seq of the last registration. `newest` has one row for each experiment and
 // scale: the last registered manifest that declared a run of this experiment at this scale.
-constexpr std::string_view kTables = R"sql(
+const char* const projection_tables = R"sql(
 CREATE TABLE runs(
   id TEXT PRIMARY KEY,
   ordinal INTEGER NOT NULL UNIQUE,
@@ -89,6 +83,12 @@ CREATE TABLE newest(
   PRIMARY KEY (experiment, scale)
 ) STRICT;
 )sql";
+
+namespace {
+
+using nlohmann::json;
+using sqlite::Database;
+using sqlite::Statement;
 
 /// Throws StoreDamaged when the target or the checkpoint interval of a run is outside the limits.
 /// Larger values could make step counts overflow.
@@ -339,14 +339,10 @@ std::optional<Record> only(std::vector<Record> found) {
 
 }  // namespace
 
-void create_projections(Database& database) {
-  database.execute(std::string(kTables));
-}
-
 Database empty_projections(const std::string& name) {
   Database tables = Database::in_memory(name);
   tables.execute("PRAGMA foreign_keys=ON");
-  create_projections(tables);
+  tables.execute(projection_tables);
   return tables;
 }
 
@@ -389,12 +385,12 @@ void derive_projections(Database& database, const EventLog& log,
   for (auto table = projected_tables.rbegin(); table != projected_tables.rend(); ++table) {
     database.execute(fmt::format("DROP TABLE IF EXISTS {}", *table));
   }
-  create_projections(database);
+  database.execute(projection_tables);
   log.for_each([&database](const Event& event) { apply(database, event); });
 }
 
 void shadow_projections(Database& database, const EventLog& log) {
-  std::string tables(kTables);
+  std::string tables = projection_tables;
   for (std::size_t at = 0; (at = tables.find("CREATE TABLE", at)) != tables.npos; at += 12) {
     tables.replace(at, 12, "CREATE TEMP TABLE");
   }

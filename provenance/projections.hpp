@@ -20,8 +20,8 @@ namespace shearcell {
 inline constexpr std::array<std::string_view, 6> projected_tables = {
     "runs", "memberships", "checkpoints", "figures", "manifests", "newest"};
 
-/// Creates the empty tables.
-void create_projections(sqlite::Database& database);
+/// SQL that creates the empty tables.
+extern const char* const projection_tables;
 /// Creates empty tables in memory, for the events of a log that may be damaged or forged. Error
 /// messages call the database `name`.
 sqlite::Database empty_projections(const std::string& name);

@@ -71,20 +71,17 @@ std::string event_name(std::uint64_t seq) {
 
 /// Checks that the log contains the earlier head. If so, no event up to this head was changed.
 void check_extends(const EventLog& log, const Head& earlier, VerifyReport& report) {
-  const std::string event = event_name(earlier.seq);
-  if (report.head.seq < earlier.seq) {
-    return add_error(report, event,
-                     fmt::format("the log was cut off: it ends at event {}, before the given head, "
-                                 "{}; restore the log from a backup",
-                                 report.head.seq, event));
-  }
   const std::string found = log.hash_at(earlier.seq);
   if (found == earlier.hash) return;
-  add_error(
-      report, event,
-      fmt::format("the log was rewritten, or the given head is wrong: {} has hash {}, but the "
-                  "given head has {}; check the head, or restore the log from a backup",
-                  event, found, earlier.hash));
+  const std::string why =
+      found.empty()
+          ? fmt::format("the log was cut off: it ends at event {}", report.head.seq)
+          : fmt::format(
+                "the log was rewritten, or the given head is wrong: the event has hash {}, "
+                "but the given head has {}",
+                found, earlier.hash);
+  add_error(report, event_name(earlier.seq),
+            why + "; check the given head, or restore the log from a backup");
 }
 
 /// The tables derived from the events. Events that cannot be applied are reported and skipped.

@@ -29,7 +29,7 @@ std::vector<Case> damaged_logs() {
                interrupted, "3 stages computed"),
       reported("log_missing", "run m.yaml", 4, log(removed), "the log is lost", kBackup),
       reported("log_is_text", "status", 4, log(written(std::string(9999, 'x'))),
-               "not an SQLite database", "from a backup"),
+               "not a database", "from a backup"),
       reported("log_is_folder", "status", 4, log(folder_instead), odd, "remove it"),
       reported("log_is_link", "status", 4, log(link_instead), odd, "remove it"),
       reported("log_is_pipe", "verify", 4, log(pipe_instead), odd, "remove it"),

@@ -100,9 +100,8 @@ void take_packing(Input input) {
 // Lines of events: upcast, fold, query.
 void take_events(Input input) {
   static sqlite::Database database = [] {
-    sqlite::Database fresh = sqlite::Database::in_memory();
+    sqlite::Database fresh = empty_projections("fresh");
     fresh.execute("PRAGMA foreign_keys=ON");
-    create_projections(fresh);
     return fresh;
   }();
   const sqlite::WriteTransaction undone(database);
