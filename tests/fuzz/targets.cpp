@@ -99,11 +99,7 @@ void take_packing(Input input) {
 
 // Lines of events: upcast, fold, query.
 void take_events(Input input) {
-  static sqlite::Database database = [] {
-    sqlite::Database fresh = empty_projections("fresh");
-    fresh.execute("PRAGMA foreign_keys=ON");
-    return fresh;
-  }();
+  static sqlite::Database database = empty_projections("fresh");
   const sqlite::WriteTransaction undone(database);
   for (const Event& event : forged_events(text_of(input))) {
     attempt<StoreDamaged>([&] { apply(database, event); });
