@@ -170,7 +170,10 @@ struct StoreMerged {
 };
 
 /// An event that has no struct above: FigureGenerated, for example, or an event of unknown type.
-struct Other {};
+struct Other {
+  static constexpr std::string_view kType = "Other";
+  static void fields(auto&, auto) {}
+};
 
 using Any =
     std::variant<Other, ManifestRegistered, PackingRegistered, RunDeclared, RunStarted, RunResumed,

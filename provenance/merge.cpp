@@ -203,16 +203,6 @@ RunMerge plan_run(const Database& into, const EventLog& log, const Database& sou
   return plan;
 }
 
-constexpr std::string_view kMergeStream = "store/merge";
-
-bool merged_before(const EventLog& log, const Head& head) {
-  return std::ranges::any_of(
-      log.events(kMergeStream, events::StoreMerged::kType), [&](const Event& event) {
-        const auto merged = std::get<events::StoreMerged>(events::decode(event));
-        return member_of(merged.head, "hash") == head.hash;
-      });
-}
-
 /// Whether the stream holds the text of a manifest or of a file of grains.
 bool holds_a_text(std::string_view stream) {
   return stream.starts_with("manifest/") || stream.starts_with("packing/");
@@ -297,8 +287,12 @@ void merge_events(Database& into, EventLog& log, const sqlite::WriteTransaction&
       if (event.seq == own->seq) take(event);
     }
   }
-  if (merged_before(log, source.head)) return;
-  log.append(lock, kMergeStream,
+  Statement same_head(into,
+                      "SELECT 1 FROM events WHERE stream = 'store/merge' AND json_valid(payload) "
+                      "AND json_extract(payload, '$.head.hash') = ?",
+                      source.head.hash);
+  if (same_head.step()) return;  // merged before
+  log.append(lock, "store/merge",
              events::encode(
                  events::StoreMerged{.source = source.folder.string(),
                                      .head = {{"seq", source.head.seq}, {"hash", source.head.hash}},
