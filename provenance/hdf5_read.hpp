@@ -21,7 +21,7 @@
 namespace shearcell::hdf5 {
 
 /// The frame of a checkpoint is the HDF5 user block: two lines of text padded with zeros. The frame
-/// holds the SHA-256 of all bytes that follow, so damage is found before they are interpreted.
+/// holds the SHA-256 of all bytes that follow, for readers that do not have the log.
 inline constexpr std::size_t kFrameSize = 512;
 inline constexpr const char* kFrameTitle = "shearcell checkpoint 1\n";
 
