@@ -138,7 +138,7 @@ std::optional<std::string> read_plain(const fs::path& path, std::size_t limit) {
   return bytes;
 }
 
-void require_ours(const fs::path& path, const Recognize& ours) {
+void require_ours(const fs::path& path, const std::function<bool(std::string_view)>& ours) {
   std::error_code failure;
   const fs::file_type type = fs::symlink_status(path, failure).type();
   if (type == fs::file_type::not_found) return;

@@ -63,12 +63,11 @@ class NotOurs : public std::runtime_error {
 /// missing, a link or a pipe, or cannot be read.
 std::optional<std::string> read_plain(const std::filesystem::path& path, std::size_t limit);
 
-/// Says whether this program wrote the file that begins with these bytes (at most 4096).
-using Recognize = std::function<bool(std::string_view beginning)>;
-
-/// Throws NotOurs if `path` exists and is not a regular file that `ours` recognizes. Throws
-/// std::system_error when the type of the file cannot be determined.
-void require_ours(const std::filesystem::path& path, const Recognize& ours);
+/// Throws NotOurs if `path` exists and is not a regular file that this program wrote. `ours` says
+/// this from the first bytes of the file (at most 4096). Throws std::system_error when the type of
+/// the file cannot be determined.
+void require_ours(const std::filesystem::path& path,
+                  const std::function<bool(std::string_view)>& ours);
 
 /// Writes a file with replace_file(), so a reader sees the old file or the complete new file.
 /// Creates the folder of `path` if it is missing.
