@@ -86,15 +86,12 @@ void require_agreement(const Database& into, const std::string& name,
 /// If `into` has the same state in a file with other bytes (another HDF5 version), returns false.
 bool is_news(const Database& into, const CheckpointRecord& record) {
   Statement same(into,
-                 "SELECT state, sha256 FROM checkpoints WHERE run = ? AND (sha256 = ? OR (step = ? "
-                 "AND state_hash = ? AND state <> 'rejected'))",
+                 "SELECT count(*), sum(state <> 'rejected') FROM checkpoints WHERE run = ? AND "
+                 "(sha256 = ? OR (step = ? AND state_hash = ? AND state <> 'rejected'))",
                  record.run, record.sha256, record.step, record.state_hash);
-  bool damaged_here = false;
-  while (same.step()) {
-    if (same.text(0) != "rejected") return false;
-    damaged_here = true;
-  }
-  return !damaged_here || record.state == CheckpointState::recorded;
+  same.step();
+  const bool damaged_here = same.u64(0) > 0;
+  return same.u64(1) == 0 && (!damaged_here || record.state == CheckpointState::recorded);
 }
 
 /// The checkpoints of the source whose files must be copied.
@@ -141,8 +138,7 @@ struct RunMerge {
     }
     // Events that reject, prune or regenerate a checkpoint are copied only if `into` lacks it.
     if (!event.type.starts_with("Checkpoint")) return true;
-    const nlohmann::json sha256 = member_of(event.body(), "sha256");
-    return !sha256.is_string() || !known.contains(sha256.get<std::string>());
+    return !known.contains(text_at(event.body(), "sha256"));
   }
 
   /// Returns `last_claim` if the copied events changed the state of the run. The caller then
