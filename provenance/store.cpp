@@ -341,6 +341,11 @@ void Store::renew_leases() {
   lock.commit();
 }
 
+bool Store::holds(const std::string& id) const {
+  const std::scoped_lock guard(mutex_);
+  return held_.contains(id);
+}
+
 CheckpointRecord Store::record_checkpoint(const std::string& id, const Checkpoint& checkpoint,
                                           const Effort& effort) {
   must_write();

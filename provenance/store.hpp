@@ -124,6 +124,7 @@ class Store {
   /// another program has taken over are no longer held.
   void renew_leases();
   double lease_seconds() const { return static_cast<double>(lease_ms_) / 1000; }
+  bool holds(const std::string& id) const;
 
   /// Writes the file, then the event. If the checkpoint is already recorded, returns its record.
   /// Throws std::invalid_argument when the checkpoint belongs to another run or holds NaN.

@@ -74,8 +74,10 @@ TEST_F(LeaseTest, ExpiresUnlessItIsRenewed) {
                                         {"another program is computing it"});
   }
   std::this_thread::sleep_for(500ms);
+  EXPECT_TRUE(first.holds(id_)) << "nobody took it";
   EXPECT_EQ(second.start_stage(id_, {}), 2u);
   first.renew_leases();
+  EXPECT_FALSE(first.holds(id_));
   EXPECT_THROW(first.record_checkpoint(id_, sample_checkpoint(id_)), ConcurrencyConflict);
   EXPECT_EQ(second.leases().at(0).attempt, 2u) << "the late one renewed what was not its own";
   second.record_checkpoint(id_, sample_checkpoint(id_));
@@ -90,6 +92,7 @@ TEST_F(LeaseTest, OfARunThatAnotherProgramCompletedIsLost) {
   ASSERT_TRUE(other.leases().empty());
   expect_refused<ConcurrencyConflict>([&] { late.record_checkpoint(id_, sample_checkpoint(id_)); },
                                       {"another process continued"});
+  EXPECT_FALSE(late.holds(id_));
   EXPECT_THROW(late.interrupt_stage(id_, "late"), ConcurrencyConflict);
   EXPECT_TRUE(other.checkpoints(id_).empty());
 }
@@ -102,7 +105,7 @@ TEST_F(LeaseTest, IsNotRenewedForARunThatAnotherProgramContinued) {
   other.start_stage(id_, {});
   other.interrupt_stage(id_, "SIGTERM");
   late.renew_leases();
-  EXPECT_THROW(late.interrupt_stage(id_, "late"), ConcurrencyConflict);
+  EXPECT_FALSE(late.holds(id_));
   EXPECT_EQ(other.start_stage(id_, {}), 3u);
 }
 
