@@ -36,7 +36,8 @@ inline WallPose pose_of(const Checkpoint& checkpoint) {
 /// observables).
 std::vector<std::byte> encode_checkpoint(const Checkpoint& checkpoint);
 
-/// Decodes a checkpoint file. Throws StoreDamaged unless it is complete and consistent.
+/// Decodes a checkpoint file, whose SHA-256 the caller has checked (ObjectStore::get). Throws
+/// StoreDamaged unless it is complete and consistent.
 Checkpoint decode_checkpoint(std::span<const std::byte> image);
 
 /// Throws StoreDamaged with the HDF5 path when a length, position or tilt is implausibly large or

@@ -89,13 +89,8 @@ void DerivedCache::open() {
   database.execute("PRAGMA cell_size_check=ON; PRAGMA synchronous=OFF;");
   if (read_only_) database.execute("PRAGMA query_only=ON");
   if (!read_only_ && database.integer("PRAGMA page_count") == 0) {
-    sqlite::WriteTransaction lock(database);
-    if (database.integer("SELECT count(*) FROM sqlite_schema") == 0) {
-      database.execute(kDerivedTable);
-      database.execute(fmt::format("PRAGMA application_id={}; PRAGMA user_version={};",
-                                   kApplicationId, kLayout));
-    }
-    lock.commit();
+    database.create_tables(fmt::format("{} PRAGMA application_id={}; PRAGMA user_version={};",
+                                       kDerivedTable, kApplicationId, kLayout));
   }
   if (database.integer("PRAGMA application_id") != kApplicationId) {
     throw NotOurs(file_.string() + ": this database belongs to another program; remove it");

@@ -10,7 +10,6 @@
 #include <cerrno>
 #include <cstdio>
 #include <map>
-#include <set>
 #include <string>
 #include <system_error>
 
@@ -48,17 +47,10 @@ CREATE TRIGGER events_are_never_deleted BEFORE DELETE ON events
 BEGIN SELECT RAISE(ABORT, 'events are never deleted'); END;
 )sql";
 
-void create_tables(sqlite::Database& database) {
-  sqlite::WriteTransaction lock(database);
-  // Another process may have created the tables while this process waited for the lock.
-  if (database.integer("SELECT count(*) FROM sqlite_schema") == 0) {
-    database.execute(kEvents);
-    create_projections(database);
-    create_leases(database);
-    database.execute(fmt::format("PRAGMA application_id={}; PRAGMA user_version={};",
-                                 kStoreApplicationId, kSchemaVersion));
-  }
-  lock.commit();
+/// The SQL statements that create the tables of a new store.
+std::string own_tables() {
+  return fmt::format("{}{}{}PRAGMA application_id={}; PRAGMA user_version={};", kEvents,
+                     projection_tables, lease_table, kStoreApplicationId, kSchemaVersion);
 }
 
 /// Creates the log under a temporary name and then renames it, so that a killed program leaves no
@@ -70,7 +62,7 @@ void create_whole(const std::filesystem::path& file) {
   {
     sqlite::Database database(whole, Access::create);
     database.execute("PRAGMA journal_mode=MEMORY");
-    create_tables(database);
+    database.create_tables(own_tables());
   }
   // The folder is synced when the first event is written.
   if (renameat2(AT_FDCWD, whole.c_str(), AT_FDCWD, file.c_str(), RENAME_NOREPLACE) != 0) {
@@ -82,17 +74,17 @@ void create_whole(const std::filesystem::path& file) {
 /// could contain SQL that runs whenever a table is read or written. A missing table causes an error
 /// only when it is used. Derived tables of an older schema may differ, because they are not read.
 void require_own_schema(sqlite::Database& database) {
-  sqlite::Database own = sqlite::Database::in_memory();
-  create_tables(own);
-  own.execute("ANALYZE");  // creates SQLite's statistics tables, which a store may have, too
+  // SQLite's own statistics tables are allowed, too.
+  const std::string own = own_tables() +
+                          "CREATE TABLE sqlite_stat1(tbl,idx,stat);"
+                          "CREATE TABLE sqlite_stat4(tbl,idx,neq,nlt,ndlt,sample);";
   const bool older = database.integer("PRAGMA user_version") < kSchemaVersion;
-  constexpr const char* statements = "SELECT sql, name FROM sqlite_schema WHERE sql IS NOT NULL";
-  std::set<std::string> known;
-  for (sqlite::Statement row(own, statements); row.step();) known.insert(row.text(0));
-  for (sqlite::Statement row(database, statements); row.step();) {
+  sqlite::Statement row(database, "SELECT sql, name FROM sqlite_schema WHERE instr(?, sql) = 0",
+                        own);
+  while (row.step()) {
     const std::string sql = row.text(0), name = row.text(1);
     const bool derived = std::ranges::count(projected_tables, name) > 0;
-    if (known.contains(sql) || (older && derived && sql.starts_with("CREATE TABLE "))) continue;
+    if (older && derived && sql.starts_with("CREATE TABLE ")) continue;
     throw StoreDamaged(fmt::format(
         "{}: the database contains '{}', which is not part of schema {}; restore it from a backup",
         database.name(), name, kSchemaVersion));
@@ -107,17 +99,11 @@ void require_known_schema(sqlite::Database& database) {
     refuse("this SQLite database belongs to another program; choose another store folder");
   }
   const std::int64_t version = database.integer("PRAGMA user_version");
-  if (version > kSchemaVersion) {
+  if (version < 1 || version > kSchemaVersion) {
     refuse(
-        fmt::format("the store has schema {}, and this program knows schemas up to {}; use the "
-                    "newer shearcell that wrote it",
+        fmt::format("the store has schema {}, and this program knows the schemas 1 to {}; use the "
+                    "newer shearcell that wrote it, or restore the file from a backup",
                     version, kSchemaVersion));
-  }
-  if (version < 1) {
-    refuse(
-        fmt::format("the store has schema {}, which never existed; restore the file from a "
-                    "backup",
-                    version));
   }
 }
 
@@ -129,7 +115,7 @@ void migrate(sqlite::Database& database) {
   sqlite::WriteTransaction lock(database);
   // Another process may have migrated the store while this process waited for the lock.
   const std::int64_t version = database.integer("PRAGMA user_version");
-  if (version == 1) create_leases(database);
+  if (version == 1) database.execute(lease_table);
   if (version < kSchemaVersion) {
     derive_projections(database, EventLog(database), lock);
     database.execute(fmt::format("PRAGMA user_version={}", kSchemaVersion));
@@ -162,21 +148,6 @@ Event read_event(const sqlite::Statement& row) {
   return e;
 }
 
-/// Says in words which field of an event was changed. The neighbouring events give the expected
-/// value of a field. If the hash is valid with this value, the field was changed.
-std::string change_of(const Event& event, const std::string& prev_hash, std::uint64_t version,
-                      const std::optional<Event>& next) {
-  Event repaired = event;
-  repaired.prev_hash = prev_hash;
-  if (event_hash(repaired) == event.hash) return "prev_hash was changed";
-  repaired = event;
-  repaired.version = version;
-  if (event_hash(repaired) == event.hash) return "version was changed";
-  if (next && next->prev_hash == event_hash(event)) return "hash was changed";
-  return "its hash does not match its content: stream, type, schema, recorded_at or payload was "
-         "changed";
-}
-
 }  // namespace
 
 sqlite::Database open_database(const std::filesystem::path& file, Access access) {
@@ -202,7 +173,7 @@ sqlite::Database open_database(const std::filesystem::path& file, Access access)
                      ": the log is empty, because the creation of this store was interrupted; "
                      "`shearcell run` with a manifest completes it");
     }
-    create_tables(database);
+    database.create_tables(own_tables());
   }
   require_known_schema(database);
   require_own_schema(database);
@@ -223,10 +194,6 @@ std::string event_hash(const Event& event) {
 
 std::string run_stream(std::string_view run) {
   return fmt::format("run/{}", run);
-}
-
-std::string packing_stream(std::string_view sha256) {
-  return "packing/" + std::string(sha256);
 }
 
 std::optional<std::string> run_of(const Event& event) {
@@ -298,34 +265,29 @@ void EventLog::for_each(const std::function<void(const Event&)>& visit) const {
 }
 
 std::optional<ChainFault> EventLog::verify_chain() const {
-  sqlite::Statement query(database_, std::string(kSelect) + "ORDER BY seq");
-  const auto read_next = [&query]() -> std::optional<Event> {
-    if (!query.step()) return std::nullopt;
-    return read_event(query);
-  };
+  std::optional<ChainFault> first;
   std::map<std::string, std::uint64_t> versions;
   Head last{.seq = 0, .hash = zeros()};
-  for (std::optional<Event> event = read_next(); event;) {
-    const auto fault = [&](const std::string& message) {
-      return ChainFault{event->seq, fmt::format("event {} ({} of {}): {}", event->seq, event->type,
-                                                event->stream, message)};
-    };
-    if (event->seq != last.seq + 1) {
-      return fault(fmt::format("event {} is missing here", last.seq + 1));
+  for_each([&](const Event& event) {
+    if (first) return;
+    const std::uint64_t version = ++versions[event.stream];
+    std::string fault;
+    if (event.seq != last.seq + 1) {
+      fault = fmt::format("event {} is missing here", last.seq + 1);
+    } else if (event_hash(event) != event.hash) {
+      fault = "its hash does not match its content: one of its fields was changed";
+    } else if (event.prev_hash != last.hash) {
+      fault = "prev_hash is not the previous event's hash";
+    } else if (event.version != version) {
+      fault = fmt::format("its version is {}, but should be {}", event.version, version);
     }
-    const std::uint64_t version = ++versions[event->stream];
-    std::optional<Event> next = read_next();
-    if (event_hash(*event) != event->hash) {
-      return fault(change_of(*event, last.hash, version, next));
+    if (!fault.empty()) {
+      first = {event.seq,
+               fmt::format("event {} ({} of {}): {}", event.seq, event.type, event.stream, fault)};
     }
-    if (event->prev_hash != last.hash) return fault("prev_hash is not the previous event's hash");
-    if (event->version != version) {
-      return fault(fmt::format("its version is {}, but should be {}", event->version, version));
-    }
-    last = {.seq = event->seq, .hash = event->hash};
-    event = std::move(next);
-  }
-  return std::nullopt;
+    last = {.seq = event.seq, .hash = event.hash};
+  });
+  return first;
 }
 
 }  // namespace shearcell

@@ -43,8 +43,7 @@ struct Event {
   nlohmann::json body() const;
 };
 
-std::string run_stream(std::string_view run);         ///< "run/<id>"
-std::string packing_stream(std::string_view sha256);  ///< "packing/<sha256>"
+std::string run_stream(std::string_view run);  ///< "run/<id>"
 /// The id of the event's run; nothing if the stream does not belong to a run.
 std::optional<std::string> run_of(const Event& event);
 
@@ -66,7 +65,7 @@ struct Head {
 /// The first event at which the chain is broken.
 struct ChainFault {
   std::uint64_t seq = 0;
-  std::string message;  ///< names the changed field if it can be determined
+  std::string message;
 };
 
 /// The hash of an event: SHA-256 over the text "shearcell event 1", prev_hash and the other fields,

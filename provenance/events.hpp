@@ -20,23 +20,26 @@ namespace shearcell::events {
 // third argument may be missing, and is written only if it is not empty. All other members are
 // required. std::optional members may be null.
 
-struct ManifestRegistered {
-  static constexpr std::string_view kType = "ManifestRegistered";
+/// Base of the events that hold the text of a file.
+struct TextRegistered {
   std::string sha256, path, text;  ///< `path` as the user gave it, for display only
-  nlohmann::json info;
   static void fields(auto& e, auto field) {
     field("sha256", e.sha256), field("path", e.path), field("text", e.text);
+  }
+};
+
+struct ManifestRegistered : TextRegistered {
+  static constexpr std::string_view kType = "ManifestRegistered";
+  nlohmann::json info;
+  static void fields(auto& e, auto field) {
+    TextRegistered::fields(e, field);
     field("info", e.info);
   }
 };
 
 /// A file of grain positions that was registered as the initial packing of runs.
-struct PackingRegistered {
+struct PackingRegistered : TextRegistered {
   static constexpr std::string_view kType = "PackingRegistered";
-  std::string sha256, path, text;
-  static void fields(auto& e, auto field) {
-    field("sha256", e.sha256), field("path", e.path), field("text", e.text);
-  }
 };
 
 struct RunDeclared {
@@ -51,15 +54,23 @@ struct RunDeclared {
   }
 };
 
-struct RunStarted {
-  static constexpr std::string_view kType = "RunStarted";
+/// Base of the events that begin an attempt.
+struct AttemptBegun {
   std::uint64_t attempt = 0;
   nlohmann::json host, process;
-  std::optional<std::string> parent_checkpoint;    ///< SHA-256 of the initial state
   std::optional<std::uint64_t> bits_version = {};  ///< absent in events of earlier versions
   static void fields(auto& e, auto field) {
     field("attempt", e.attempt), field("host", e.host), field("process", e.process);
-    field("parent_checkpoint", e.parent_checkpoint), field("bits_version", e.bits_version, true);
+    field("bits_version", e.bits_version, true);
+  }
+};
+
+struct RunStarted : AttemptBegun {
+  static constexpr std::string_view kType = "RunStarted";
+  std::optional<std::string> parent_checkpoint = {};  ///< SHA-256 of the initial state
+  static void fields(auto& e, auto field) {
+    AttemptBegun::fields(e, field);
+    field("parent_checkpoint", e.parent_checkpoint);
   }
 };
 
@@ -72,15 +83,12 @@ struct StateReached {
   }
 };
 
-struct RunResumed {
+struct RunResumed : AttemptBegun {
   static constexpr std::string_view kType = "RunResumed";
-  std::uint64_t attempt = 0;
-  nlohmann::json host, process;
   StateReached from;
-  std::optional<std::uint64_t> bits_version = {};  ///< absent in events of earlier versions
   static void fields(auto& e, auto field) {
-    field("attempt", e.attempt), field("host", e.host), field("process", e.process);
-    field("from", e.from), field("bits_version", e.bits_version, true);
+    AttemptBegun::fields(e, field);
+    field("from", e.from);
   }
 };
 
@@ -162,7 +170,10 @@ struct StoreMerged {
 };
 
 /// An event that has no struct above: FigureGenerated, for example, or an event of unknown type.
-struct Other {};
+struct Other {
+  static constexpr std::string_view kType = "Other";
+  static void fields(auto&, auto) {}
+};
 
 using Any =
     std::variant<Other, ManifestRegistered, PackingRegistered, RunDeclared, RunStarted, RunResumed,

@@ -18,22 +18,15 @@ using Bytes = std::span<const std::byte>;
 
 static_assert(std::endian::native == std::endian::little, "files need little-endian numbers");
 
-constexpr std::uint64_t kNowhere = ~std::uint64_t{0};  // HDF5's undefined address
-constexpr std::uint64_t kMostMessages = 4096;          // in one object header
-
-/// Types of messages in an object header (section IV.A.2 of the format).
+/// Types of messages in an object header (section IV.A.2 of the format). Other messages are
+/// ignored: an object that needs them lacks what is looked up in it.
 enum Message : std::uint64_t {
-  kNil = 0,
   kSpace = 1,
-  kLinkInfo = 2,
   kType = 3,
-  kFill = 5,
   kLink = 6,
   kLayout = 8,
-  kGroupInfo = 10,
   kAttribute = 12,
-  kContinuation = 16,
-  kModified = 18
+  kContinuation = 16
 };
 
 // Datatype messages, byte for byte: class and version, bit field, size, and properties.
@@ -42,7 +35,7 @@ constexpr std::string_view kFloat64 =
     "\x11\x20\x3f\0\x08\0\0\0\0\0\x40\0\x34\x0b\0\x34\xff\x03\0\0"sv;
 constexpr std::string_view kUnsigned64 = "\x10\0\0\0\x08\0\0\0\0\0\x40\0"sv;
 constexpr std::string_view kUnsigned8 = "\x10\0\0\0\x01\0\0\0\0\0\x08\0"sv;
-constexpr std::byte kFixedText{0x13};
+constexpr std::string_view kFixedText = "\x13";
 
 std::string text_in(Bytes bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
@@ -86,10 +79,9 @@ bool is_type(Bytes found, std::string_view wanted) {
 
 /// Size of each dimension (empty for a scalar); nothing if the message is not supported.
 std::optional<std::vector<std::uint64_t>> shape_of(Bytes space) {
-  if (space.size() < 8) return std::nullopt;
   Cursor cursor(space);
   const std::uint64_t version = cursor.number(1), rank = cursor.number(1);
-  if (version != 1 || rank > 2 || space.size() < 8 + 8 * rank) return std::nullopt;
+  if (version != 1 || rank > 2) return std::nullopt;
   cursor.take(6);  // flags and reserved bytes; maximum sizes after the shape are ignored
   std::vector<std::uint64_t> shape;
   for (std::uint64_t d = 0; d < rank; ++d) shape.push_back(cursor.number(8));
@@ -122,16 +114,17 @@ Object Object::root(Bytes file, std::size_t user_block) {
   constexpr std::size_t superblock_size = 96;
   if (file.size() < superblock_size) refuse("file", "it is truncated");
   Cursor cursor(file);
-  if (text_in(cursor.take(8)) != "\x89HDF\r\n\x1a\n") refuse("file", "it is not HDF5");
-  const bool known = cursor.number(5) == 0 &&
-                     cursor.number(2) == 0x0808;  // versions 0; addresses and lengths have 8 bytes
+  // Version 0; addresses and lengths have 8 bytes.
+  const bool known = text_in(cursor.take(8)) == "\x89HDF\r\n\x1a\n" && cursor.number(5) == 0 &&
+                     cursor.number(2) == 0x0808;
   cursor.take(9);
   if (!known || cursor.number(8) != user_block) {
     refuse("file", "its superblock is not one that this program writes");
   }
   cursor.take(8);
-  if (cursor.number(8) != user_block + file.size())
+  if (cursor.number(8) != user_block + file.size()) {
     refuse("file", "its size differs from the size in its superblock");
+  }
   cursor.take(16);
   return {file, cursor.number(8), ""};
 }
@@ -143,7 +136,6 @@ Object::Object(Bytes file, std::uint64_t address, std::string path)
     if (prefix.number(1) != 1) fail("has an unsupported object header");
     prefix.take(1);
     std::uint64_t messages = prefix.number(2);
-    if (messages > kMostMessages) fail("has too many messages");
     prefix.take(4);
     std::vector<Bytes> blocks = {at(address + 16, prefix.number(4))};
     for (std::size_t b = 0; b < blocks.size(); ++b) {
@@ -151,10 +143,9 @@ Object::Object(Bytes file, std::uint64_t address, std::string path)
         // The count decreases, so blocks that point at each other cannot cause an endless loop.
         if (messages-- == 0) fail("has more messages than the number in its header");
         const std::uint64_t type = cursor.number(2), size = cursor.number(2);
-        const std::uint64_t flags = cursor.number(1);
+        if ((cursor.number(1) & 2) != 0) fail("shares a message with another object");
         cursor.take(3);
         Cursor body(cursor.take(size));
-        if ((flags & 2) != 0) fail("shares a message with another object");
         if (type == kContinuation) {
           const std::uint64_t next = body.number(8);
           blocks.push_back(at(next, body.number(8)));
@@ -170,36 +161,11 @@ Object::Object(Bytes file, std::uint64_t address, std::string path)
 }
 
 void Object::read_message(std::uint64_t type, Bytes body) {
-  const auto once = [this](std::optional<Bytes>& place, Bytes found) {
-    if (place) fail("has two shapes or two types");
-    place = found;
-  };
-  switch (type) {
-    case kNil:
-    case kFill:
-    case kGroupInfo:
-    case kModified:
-      return;
-    case kSpace:
-      return once(space_, body);
-    case kType:
-      return once(type_, body);
-    case kLink:
-      return read_link(body);
-    case kAttribute:
-      return read_attribute(body);
-    case kLayout:
-      return read_layout(body);
-    case kLinkInfo: {
-      Cursor cursor(body);
-      cursor.take(1);
-      if ((cursor.number(1) & 1) != 0) cursor.take(8);
-      if (cursor.number(8) != kNowhere) fail("has links in a heap");
-      return;
-    }
-    default:
-      fail("has an unsupported layout");  // a filter, an external file, an old or dense group, ...
-  }
+  if (type == kSpace) shape_ = shape_of(body);
+  if (type == kType) type_ = body;
+  if (type == kLink) read_link(body);
+  if (type == kAttribute) read_attribute(body);
+  if (type == kLayout) read_layout(body);
 }
 
 void Object::read_link(Bytes body) {
@@ -212,8 +178,7 @@ void Object::read_link(Bytes body) {
   const std::uint64_t length = cursor.number(std::size_t{1} << (flags & 3));
   if (length == 0 || length > StoreLimits::text) fail("holds a bad name");
   const std::string name = text_in(cursor.take(length));
-  const auto address = hard ? std::optional(cursor.number(8)) : std::nullopt;
-  if (!links_.emplace(name, address).second) fail("holds a name twice");
+  if (hard) links_.emplace(name, cursor.number(8));
   if (links_.size() > StoreLimits::observables) fail("holds too many entries");
 }
 
@@ -226,15 +191,12 @@ void Object::read_attribute(Bytes body) {
   const std::uint64_t space_size = cursor.number(2);
   const std::string name = text_in(cursor.take_padded(name_size));
   const Bytes type = cursor.take_padded(type_size), space = cursor.take_padded(space_size);
-  if (!attributes_.emplace(name.substr(0, name.find('\0')), Attribute{type, space, cursor.rest()})
-           .second) {
-    fail("has an attribute twice");
-  }
+  attributes_.emplace(name.substr(0, name.find('\0')),
+                      Attribute{type, shape_of(space), cursor.rest()});
 }
 
 void Object::read_layout(Bytes body) {
   Cursor cursor(body);
-  if (layout_) fail("has two layouts");
   if (cursor.number(1) != 3 || cursor.number(1) != 1)
     fail("is not stored contiguously in this file");
   const std::uint64_t address = cursor.number(8);
@@ -243,52 +205,51 @@ void Object::read_layout(Bytes body) {
 
 Object Object::child(const std::string& name) const {
   const auto found = links_.find(name);
-  if (found == links_.end()) refuse(below(name), "is missing");
-  if (!found->second) refuse(below(name), "is not a hard link");
-  return {file_, *found->second, below(name)};
+  if (found == links_.end()) refuse(below(name), "is missing or is not a hard link");
+  return {file_, found->second, below(name)};
 }
 
 std::vector<std::string> Object::names() const {
-  if (layout_) fail("is not a group");
   std::vector<std::string> found;
   for (const auto& [name, address] : links_) found.push_back(name);
   return found;
 }
 
-/// The bytes of an attribute, which must be a single value of the data type `type` ("": any type).
-Object::Bytes Object::attribute(const std::string& name, std::string_view type,
-                                std::size_t size) const {
+/// The attribute, which must be a single value.
+const Object::Attribute& Object::scalar(const std::string& name) const {
   const auto found = attributes_.find(name);
   if (found == attributes_.end()) refuse(below(name), "is missing");
-  const Attribute& attribute = found->second;
-  const auto shape = shape_of(attribute.space);
+  const auto& shape = found->second.shape;
   if (!shape || !shape->empty()) refuse(below(name), "is not a single value");
-  if (!type.empty() && !is_type(attribute.type, type))
-    refuse(below(name), "has the wrong data type");
-  if (attribute.data.size() < size) refuse(below(name), "is truncated");
-  return attribute.data.first(size);
+  return found->second;
+}
+
+/// The eight bytes of a single number of this data type.
+Object::Bytes Object::word(const std::string& name, std::string_view type) const {
+  const Attribute& attribute = scalar(name);
+  if (!is_type(attribute.type, type)) refuse(below(name), "has the wrong data type");
+  if (attribute.data.size() < 8) refuse(below(name), "is truncated");
+  return attribute.data.first(8);
 }
 
 double Object::number(const std::string& name) const {
-  const double value = values_in<double>(attribute(name, kFloat64, 8))[0];
+  const double value = values_in<double>(word(name, kFloat64))[0];
   if (!std::isfinite(value)) refuse(below(name), "is not finite");
   return value;
 }
 
 std::uint64_t Object::count(const std::string& name) const {
-  return values_in<std::uint64_t>(attribute(name, kUnsigned64, 8))[0];
+  return values_in<std::uint64_t>(word(name, kUnsigned64))[0];
 }
 
 std::string Object::text(const std::string& name) const {
-  attribute(name, "", 0);  // checks that the attribute exists and is a scalar
-  Cursor type(attributes_.at(name).type);
-  if (type.rest().size() < 8 || type.take(1).front() != kFixedText) {
+  const auto& [type, shape, data] = scalar(name);
+  if (type.size() < 8 || !is_type(type, kFixedText)) {
     refuse(below(name), "is not a text of fixed length");
   }
-  type.take(3);
-  const std::uint64_t length = type.number(4);
-  if (length == 0 || length > StoreLimits::text) refuse(below(name), "is too long");
-  const std::string value = text_in(attribute(name, "", static_cast<std::size_t>(length)));
+  const auto length = Cursor(type.subspan(4)).number(4);
+  if (length > std::min(data.size(), StoreLimits::text)) refuse(below(name), "is too long");
+  const std::string value = text_in(data.first(static_cast<std::size_t>(length)));
   return value.substr(0, value.find('\0'));
 }
 
@@ -296,11 +257,9 @@ std::string Object::text(const std::string& name) const {
 Object::Bytes Object::values(const std::string& name, std::string_view type, std::uint64_t columns,
                              std::size_t bytes_each) const {
   const Object dataset = child(name);
-  if (!dataset.layout_ || !dataset.links_.empty()) {
-    dataset.fail("is not stored contiguously in this file");
-  }
-  if (!dataset.type_ || !is_type(*dataset.type_, type)) dataset.fail("has the wrong data type");
-  const auto shape = dataset.space_ ? shape_of(*dataset.space_) : std::nullopt;
+  if (!dataset.layout_) dataset.fail("is not stored contiguously in this file");
+  if (!is_type(dataset.type_, type)) dataset.fail("has the wrong data type");
+  const auto& shape = dataset.shape_;
   if (!shape || shape->size() != (columns == 0 ? 1 : 2) ||
       (columns != 0 && shape->back() != columns)) {
     dataset.fail("has a wrong shape");

@@ -2,9 +2,10 @@
 // Reads untrusted HDF5 files with the features that checkpoint.cpp uses. The HDF5 library is not
 // used because version 1.10 crashes on some forged files.
 //
-// The reader supports superblock 0, object headers of version 1 that contain links and attributes,
-// and contiguous data. It rejects everything else (soft and external links, chunks, filters, dense
-// groups, shared types). Every address, length and count is checked before use. Format:
+// The reader supports superblock 0, object headers of version 1 that contain hard links and
+// attributes, and contiguous data. What is stored in another way (soft and external links, chunks,
+// filters, dense groups, shared types) is rejected or counts as missing. Every address, length and
+// count is checked before use. Format:
 // https://support.hdfgroup.org/documentation/hdf5/latest/_f_m_t3.html
 #pragma once
 
@@ -20,7 +21,7 @@
 namespace shearcell::hdf5 {
 
 /// The frame of a checkpoint is the HDF5 user block: two lines of text padded with zeros. The frame
-/// holds the SHA-256 of all bytes that follow, so damage is found before they are interpreted.
+/// holds the SHA-256 of all bytes that follow, for readers that do not have the log.
 inline constexpr std::size_t kFrameSize = 512;
 inline constexpr const char* kFrameTitle = "shearcell checkpoint 1\n";
 
@@ -57,8 +58,11 @@ class Object {
   std::vector<std::uint8_t> bytes(const std::string& name) const;
 
  private:
+  using Shape = std::optional<std::vector<std::uint64_t>>;
   struct Attribute {
-    Bytes type, space, data;
+    Bytes type;
+    Shape shape;
+    Bytes data;
   };
   struct Layout {
     std::uint64_t address, size;
@@ -72,15 +76,17 @@ class Object {
   void read_link(Bytes body);
   void read_attribute(Bytes body);
   void read_layout(Bytes body);
-  Bytes attribute(const std::string& name, std::string_view type, std::size_t size) const;
+  const Attribute& scalar(const std::string& name) const;
+  Bytes word(const std::string& name, std::string_view type) const;
   Bytes values(const std::string& name, std::string_view type, std::uint64_t columns,
                std::size_t bytes_each) const;
 
   Bytes file_;
   std::string path_;
-  std::map<std::string, std::optional<std::uint64_t>> links_;  ///< addresses, or nothing
+  std::map<std::string, std::uint64_t> links_;  ///< addresses of the members of a group
   std::map<std::string, Attribute> attributes_;
-  std::optional<Bytes> type_, space_;  ///< data type and shape of a dataset
+  Bytes type_;   ///< data type of a dataset
+  Shape shape_;  ///< shape of a dataset
   std::optional<Layout> layout_;
 };
 

@@ -18,12 +18,7 @@
 
 namespace shearcell {
 
-namespace {
-
-using sqlite::Database;
-using sqlite::Statement;
-
-constexpr const char* kLeaseTable = R"sql(
+const char* const lease_table = R"sql(
 CREATE TABLE leases(
   run TEXT PRIMARY KEY,
   host TEXT NOT NULL,
@@ -36,6 +31,11 @@ CREATE TABLE leases(
   expires_at_ms INTEGER NOT NULL
 ) STRICT;
 )sql";
+
+namespace {
+
+using sqlite::Database;
+using sqlite::Statement;
 
 // Small corrections of the clock must not end a lease.
 constexpr std::uint64_t kClockSlackMs = 5000;
@@ -112,10 +112,6 @@ bool lapsed(const Lease& lease, std::uint64_t now) {
 
 std::string describe(const Holder& holder) {
   return fmt::format("host {}, process {}", holder.host, holder.pid);
-}
-
-void create_leases(Database& database) {
-  database.execute(kLeaseTable);
 }
 
 std::vector<Lease> query_leases(const Database& database, std::string_view run) {

@@ -47,8 +47,8 @@ bool lapsed(const Lease& lease, std::uint64_t now);
 /// "host vm, process 1234".
 std::string describe(const Holder& holder);
 
-/// Creates the table of leases. Stores of schema 1 have no such table and no leases.
-void create_leases(sqlite::Database& database);
+/// SQL that creates the table of leases. Stores of schema 1 have no such table and no leases.
+extern const char* const lease_table;
 /// The leases of one run, or of all runs (""), including those that have lapsed.
 std::vector<Lease> query_leases(const sqlite::Database& database, std::string_view run = "");
 /// Stores the lease and replaces any other lease of the run.

@@ -22,11 +22,9 @@ class LineageBuilder {
   LineageBuilder(RunLineage& lineage, const Event& event) : lineage_(lineage), event_(event) {}
 
   void operator()(const events::RunStarted& e) {
-    begin(e.host, lineage_.stage.parent, e.parent_checkpoint.value_or(""), e.bits_version);
+    begin(e, lineage_.stage.parent, e.parent_checkpoint.value_or(""));
   }
-  void operator()(const events::RunResumed& e) {
-    begin(e.host, lineage_.stage.id, e.from.sha256, e.bits_version);
-  }
+  void operator()(const events::RunResumed& e) { begin(e, lineage_.stage.id, e.from.sha256); }
   void operator()(const events::RunCompleted&) { end(AttemptOutcome::completed, ""); }
   void operator()(const events::RunInterrupted& e) { end(AttemptOutcome::interrupted, e.why); }
   void operator()(const events::RunFailed& e) { end(AttemptOutcome::failed, e.why); }
@@ -48,17 +46,17 @@ class LineageBuilder {
   void operator()(const auto&) {}
 
  private:
-  void begin(const json& host, const std::string& from_run, const std::string& from_checkpoint,
-             std::optional<std::uint64_t> bits_version) {
+  void begin(const events::AttemptBegun& begun, const std::string& from_run,
+             const std::string& from_checkpoint) {
     if (!lineage_.attempts.empty() && lineage_.attempts.back().outcome == AttemptOutcome::running) {
       lineage_.attempts.back().outcome = AttemptOutcome::lost;
     }
     Attempt& attempt = lineage_.attempts.emplace_back();
     attempt.seq = event_.seq;
     attempt.started_at = event_.recorded_at;
-    if (host.is_object()) attempt.host = host;
+    if (begun.host.is_object()) attempt.host = begun.host;
     // Early events have no bits_version. It was equal to the layout of their payload, 1 or 2.
-    attempt.bits_version = bits_version.value_or(std::min<std::uint64_t>(event_.schema, 2));
+    attempt.bits_version = begun.bits_version.value_or(std::min<std::uint64_t>(event_.schema, 2));
     if (from_checkpoint.empty()) return;
     attempt.from_run = from_run;
     attempt.from_checkpoint = from_checkpoint;

@@ -45,59 +45,53 @@ std::string content_key(const Event& event) {
       .hex();
 }
 
-using Step = std::pair<std::string, std::uint64_t>;  // run and step
-
-std::map<Step, std::set<std::string>> states_of(const Database& tables) {
-  std::map<Step, std::set<std::string>> states;
-  for (const CheckpointRecord& record : query_all_checkpoints(tables)) {
-    if (record.state == CheckpointState::rejected) continue;
-    states[{record.run, record.step}].insert(record.state_hash);
-  }
-  return states;
-}
-
-void require_equal_states(const Database& a, const std::string& a_name, const Database& b,
-                          const std::string& b_name) {
-  const auto known = states_of(a);
-  for (const auto& [step, states] : states_of(b)) {
-    const auto same_step = known.find(step);
-    if (same_step == known.end()) continue;
-    const auto is_known = [&](const std::string& state) {
-      return same_step->second.contains(state);
-    };
-    if (std::ranges::any_of(states, is_known)) continue;
-    throw StoreDamaged(fmt::format(
-        "run {} at step {}: {} has state {:.12} and {} has state {:.12}; one of them is wrong. "
-        "Run `shearcell verify --replay` in each store. Nothing was merged",
-        step.first, step.second, a_name, *same_step->second.begin(), b_name, *states.begin()));
-  }
-}
-
-void require_equal_runs(const Database& a, const std::string& a_name, const Database& b,
-                        const std::string& b_name) {
-  for (const Stage& stage : query_stages(b)) {
-    const auto same = query_stage(a, stage.id);
-    if (!same || same_computation(*same, stage)) continue;
-    throw StoreDamaged(
-        fmt::format("run {}: {} and {} have different parameters for this run; one store was "
-                    "changed by hand. Nothing was merged",
-                    stage.id, a_name, b_name));
-  }
+/// Throws StoreDamaged, which names both stores, when two stores hold different states of one run
+/// at the same step, or different runs under one id.
+void require_agreement(const Database& into, const std::string& name,
+                       const std::vector<Source>& sources) {
+  using Step = std::pair<std::string, std::uint64_t>;  // run and step
+  using States = std::set<std::string>;
+  std::map<std::string, std::pair<Stage, std::string>> runs;  // with the name of a store
+  std::map<Step, std::pair<States, std::string>> states;      // with the name of a store
+  const auto compare = [&](const Database& tables, const std::string& store) {
+    for (const Stage& stage : query_stages(tables)) {
+      const auto& [known, other] = runs.try_emplace(stage.id, stage, store).first->second;
+      if (same_computation(known, stage)) continue;
+      throw StoreDamaged(
+          fmt::format("run {}: {} and {} have different parameters for this run; one store was "
+                      "changed by hand. Nothing was merged",
+                      stage.id, other, store));
+    }
+    std::map<Step, States> own;
+    for (const CheckpointRecord& record : query_all_checkpoints(tables)) {
+      if (record.state == CheckpointState::rejected) continue;
+      own[{record.run, record.step}].insert(record.state_hash);
+    }
+    for (auto& [step, found] : own) {
+      auto& [known, other] = states.try_emplace(step, found, store).first->second;
+      if (std::ranges::none_of(found, [&](const auto& state) { return known.contains(state); })) {
+        throw StoreDamaged(fmt::format(
+            "run {} at step {}: {} has state {:.12} and {} has state {:.12}; one of them is wrong. "
+            "Run `shearcell verify --replay` in each store. Nothing was merged",
+            step.first, step.second, other, *known.begin(), store, *found.begin()));
+      }
+      known.merge(found);
+    }
+  };
+  compare(into, name);
+  for (const Source& source : sources) compare(source.tables, source.folder.string());
 }
 
 /// Whether `into` lacks the checkpoint, or has it only as a damaged file that `record` can replace.
 /// If `into` has the same state in a file with other bytes (another HDF5 version), returns false.
 bool is_news(const Database& into, const CheckpointRecord& record) {
   Statement same(into,
-                 "SELECT state, sha256 FROM checkpoints WHERE run = ? AND (sha256 = ? OR (step = ? "
-                 "AND state_hash = ? AND state <> 'rejected'))",
+                 "SELECT count(*), sum(state <> 'rejected') FROM checkpoints WHERE run = ? AND "
+                 "(sha256 = ? OR (step = ? AND state_hash = ? AND state <> 'rejected'))",
                  record.run, record.sha256, record.step, record.state_hash);
-  bool damaged_here = false;
-  while (same.step()) {
-    if (same.text(0) != "rejected") return false;
-    damaged_here = true;
-  }
-  return !damaged_here || record.state == CheckpointState::recorded;
+  same.step();
+  const bool damaged_here = same.u64(0) > 0;
+  return same.u64(1) == 0 && (!damaged_here || record.state == CheckpointState::recorded);
 }
 
 /// The checkpoints of the source whose files must be copied.
@@ -144,8 +138,7 @@ struct RunMerge {
     }
     // Events that reject, prune or regenerate a checkpoint are copied only if `into` lacks it.
     if (!event.type.starts_with("Checkpoint")) return true;
-    const nlohmann::json sha256 = member_of(event.body(), "sha256");
-    return !sha256.is_string() || !known.contains(sha256.get<std::string>());
+    return !known.contains(text_at(event.body(), "sha256"));
   }
 
   /// Returns `last_claim` if the copied events changed the state of the run. The caller then
@@ -206,16 +199,6 @@ RunMerge plan_run(const Database& into, const EventLog& log, const Database& sou
   return plan;
 }
 
-constexpr std::string_view kMergeStream = "store/merge";
-
-bool merged_before(const EventLog& log, const Head& head) {
-  return std::ranges::any_of(
-      log.events(kMergeStream, events::StoreMerged::kType), [&](const Event& event) {
-        const auto merged = std::get<events::StoreMerged>(events::decode(event));
-        return member_of(merged.head, "hash") == head.hash;
-      });
-}
-
 /// Whether the stream holds the text of a manifest or of a file of grains.
 bool holds_a_text(std::string_view stream) {
   return stream.starts_with("manifest/") || stream.starts_with("packing/");
@@ -252,20 +235,6 @@ Source read_source(const std::filesystem::path& folder, const std::set<std::stri
                                    folder.string(), event.seq, event.type, why));
   }
   return source;
-}
-
-/// Throws StoreDamaged, which names both stores, when two stores hold different states of one run
-/// at the same step, or different runs under one id.
-void require_agreement(const Database& into, const std::string& name,
-                       const std::vector<Source>& sources) {
-  std::vector<std::pair<std::string, const Database*>> stores = {{name, &into}};
-  for (const Source& source : sources) {
-    for (const auto& [other, tables] : stores) {
-      require_equal_runs(*tables, other, source.tables, source.folder.string());
-      require_equal_states(*tables, other, source.tables, source.folder.string());
-    }
-    stores.emplace_back(source.folder.string(), &source.tables);
-  }
 }
 
 void require_idle(const Store& into) {
@@ -314,8 +283,12 @@ void merge_events(Database& into, EventLog& log, const sqlite::WriteTransaction&
       if (event.seq == own->seq) take(event);
     }
   }
-  if (merged_before(log, source.head)) return;
-  log.append(lock, kMergeStream,
+  Statement same_head(into,
+                      "SELECT 1 FROM events WHERE stream = 'store/merge' AND json_valid(payload) "
+                      "AND json_extract(payload, '$.head.hash') = ?",
+                      source.head.hash);
+  if (same_head.step()) return;  // merged before
+  log.append(lock, "store/merge",
              events::encode(
                  events::StoreMerged{.source = source.folder.string(),
                                      .head = {{"seq", source.head.seq}, {"hash", source.head.hash}},

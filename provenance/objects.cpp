@@ -21,39 +21,33 @@ namespace {
 
 constexpr const char* kFolder = "objects";
 
-/// Opens the subfolder `name` of `parent`. If `create` is true, creates a missing subfolder. Throws
-/// if `name` is a link, so nothing outside the store is read or written.
-Descriptor open_folder(const Descriptor& parent, const std::string& name,
-                       const std::filesystem::path& path, bool create) {
-  if (create) {
-    if (mkdirat(parent.get(), name.c_str(), 0777) == 0) {
-      sync(parent, path);
-    } else if (errno != EEXIST) {
+/// Opens the folder of one object. If `create` is true, creates a missing folder; otherwise the
+/// result is not valid() when the folder does not exist. Throws if a folder below the store is a
+/// link, so nothing outside the store is read or written.
+Descriptor open_object_folder(const std::filesystem::path& store, std::string_view sha256,
+                              bool create) {
+  constexpr int flags = O_RDONLY | O_DIRECTORY | O_CLOEXEC;
+  Descriptor folder(open(store.c_str(), flags));
+  if (!folder.valid()) fail_on(store, "open the folder");
+  std::filesystem::path path = store;
+  for (const std::string& name : {std::string(kFolder), std::string(sha256.substr(0, 2))}) {
+    path /= name;
+    if (create && mkdirat(folder.get(), name.c_str(), 0777) == 0) {
+      sync(folder, path);
+    } else if (create && errno != EEXIST) {
       fail_on(path, "make the folder");
     }
-  }
-  const int number =
-      openat(parent.get(), name.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
-  if (number < 0) {
-    if (errno == ENOTDIR || errno == ELOOP) {
+    Descriptor next(openat(folder.get(), name.c_str(), flags | O_NOFOLLOW));
+    if (!next.valid() && (errno == ENOTDIR || errno == ELOOP)) {
       throw StoreDamaged(fmt::format(
           "{}: this must be a folder of the store, but it is a file or a link; remove it",
           path.string()));
     }
-    if (errno != ENOENT) fail_on(path, "open the folder");
+    if (!next.valid() && errno != ENOENT) fail_on(path, "open the folder");
+    folder = std::move(next);
+    if (!folder.valid()) break;
   }
-  return Descriptor(number);
-}
-
-/// Opens the folder of one object. The result is not valid() when the folder does not exist.
-Descriptor open_object_folder(const std::filesystem::path& store, std::string_view sha256,
-                              bool create) {
-  Descriptor root(open(store.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (!root.valid()) fail_on(store, "open the folder");
-  Descriptor objects = open_folder(root, kFolder, store / kFolder, create);
-  if (!objects.valid()) return objects;
-  const std::string two(sha256.substr(0, 2));
-  return open_folder(objects, two, store / kFolder / two, create);
+  return folder;
 }
 
 }  // namespace
@@ -75,7 +69,7 @@ std::string ObjectStore::put(std::span<const std::byte> bytes) {
   } catch (const StoreDamaged&) {
     // The object is missing or damaged, so it is written below.
   }
-  replace_file(folder, path, bytes, ".tmp-", Durability::synced);
+  replace_file(folder, path, bytes, true);
   return sha256;
 }
 

@@ -13,15 +13,9 @@
 
 namespace shearcell {
 
-namespace {
-
-using nlohmann::json;
-using sqlite::Database;
-using sqlite::Statement;
-
 // `registered` is the seq of the last registration. `newest` has one row for each experiment and
 // scale: the last registered manifest that declared a run of this experiment at this scale.
-constexpr std::string_view kTables = R"sql(
+const char* const projection_tables = R"sql(
 CREATE TABLE runs(
   id TEXT PRIMARY KEY,
   ordinal INTEGER NOT NULL UNIQUE,
@@ -89,6 +83,12 @@ CREATE TABLE newest(
   PRIMARY KEY (experiment, scale)
 ) STRICT;
 )sql";
+
+namespace {
+
+using nlohmann::json;
+using sqlite::Database;
+using sqlite::Statement;
 
 /// Throws StoreDamaged when the target or the checkpoint interval of a run is outside the limits.
 /// Larger values could make step counts overflow.
@@ -256,18 +256,15 @@ StoreDamaged damaged_table(const Database& database, const std::string& why) {
   return StoreDamaged(fmt::format("{}: a derived table {}; run `rebuild`", database.name(), why));
 }
 
-json parse(const Database& database, const std::string& text) {
-  json value = parse_json(text);
-  if (value.is_discarded()) throw damaged_table(database, "holds broken JSON");
-  return value;
-}
-
-std::vector<double> numbers(const Database& database, const std::string& text) {
+/// The value of a cell that holds JSON.
+template <class T>
+T parse(const Database& database, const std::string& text) {
   try {
-    return parse(database, text).get<std::vector<double>>();
+    const json value = parse_json(text);
+    if (!value.is_discarded()) return value.get<T>();
   } catch (const json::exception&) {
-    throw damaged_table(database, "has a value that is not a list of numbers");
   }
+  throw damaged_table(database, "holds broken JSON");
 }
 
 template <class State>
@@ -288,9 +285,9 @@ std::vector<Membership> query_memberships(const Database& database, const std::s
     std::uint64_t newest = 0;
     row.get(run, place.experiment, place.scale, place.variant, place.seed, place.manifest, labels,
             ask.target_cycles, ask.checkpoint_every, ask.ordinal, until, phases, newest);
-    place.swept = parse(database, labels);
-    ask.until = parse(database, until);
-    ask.checkpoint_phases = numbers(database, phases);
+    place.swept = parse<json>(database, labels);
+    ask.until = parse<json>(database, until);
+    ask.checkpoint_phases = parse<std::vector<double>>(database, phases);
     is_newest = newest != 0;
     require_cycles(ask.target_cycles, ask.checkpoint_every);
     return m;
@@ -309,9 +306,8 @@ std::vector<Stage> select_runs(const Database& database, const std::string& rest
     row.get(stage.id, ordinal, stage.parent, stage.kind, resolved, state, stage.grains,
             stage.target_cycles, stage.attempts, stage.cycle, stage.step, stage.state_hash,
             stage.wall_seconds, stage.particle_steps, stage.error, stage.updated_at, ends);
-    stage.ends = parse(database, ends);
-    if (!stage.ends.is_array()) throw damaged_table(database, "has `ends` that are not a list");
-    stage.resolved = parse(database, resolved);
+    stage.ends = parse<json::array_t>(database, ends);
+    stage.resolved = parse<json>(database, resolved);
     require_cycles(stage.target_cycles, 1);
     stage.state = state_of<StageState>(database, state);
     stage.memberships = query_memberships(database, stage.id);
@@ -329,10 +325,7 @@ std::vector<CheckpointRecord> select_checkpoints(const Database& database, const
     row.get(c.run, c.sha256, c.step, c.cycle, c.time_s, c.file, c.size, c.state_hash, observables,
             state, c.seq);
     c.state = state_of<CheckpointState>(database, state);
-    const json values_by_name = parse(database, observables);
-    for (const auto& [name, value] : values_by_name.items()) {
-      if (value.is_number()) c.observables[name] = value.template get<double>();
-    }
+    c.observables = parse<std::map<std::string, double>>(database, observables);
     return c;
   });
 }
@@ -346,14 +339,10 @@ std::optional<Record> only(std::vector<Record> found) {
 
 }  // namespace
 
-void create_projections(Database& database) {
-  database.execute(std::string(kTables));
-}
-
 Database empty_projections(const std::string& name) {
   Database tables = Database::in_memory(name);
   tables.execute("PRAGMA foreign_keys=ON");
-  create_projections(tables);
+  tables.execute(projection_tables);
   return tables;
 }
 
@@ -373,16 +362,15 @@ std::string try_apply(Database& database, const Event& event) {
   try {
     apply(database, event);
     const events::Any decoded = events::decode(event);
-    const auto* manifest = std::get_if<events::ManifestRegistered>(&decoded);
-    const auto is_of = [&](const std::string& stream, const auto& registered) {
-      return event.stream == stream && registered.sha256 == sha256_hex(registered.text);
-    };
-    if (manifest != nullptr && !is_of("manifest/" + manifest->sha256, *manifest)) {
-      return "the SHA-256 of the manifest's text differs from the recorded one";
-    }
-    const auto* packing = std::get_if<events::PackingRegistered>(&decoded);
-    if (packing != nullptr && !is_of(packing_stream(packing->sha256), *packing)) {
-      return "the SHA-256 of the file of grains differs from the recorded one";
+    const auto* text = std::visit(
+        [](const auto& e) -> const events::TextRegistered* {
+          if constexpr (requires { e.text; }) return &e;
+          return nullptr;
+        },
+        decoded);
+    if (text != nullptr && (text->sha256 != sha256_hex(text->text) ||
+                            event.stream.substr(event.stream.find('/') + 1) != text->sha256)) {
+      return "the SHA-256 of the registered text differs from the recorded one";
     }
     return event.recorded_at.empty() ? "it does not say when it was recorded" : "";
   } catch (const StoreDamaged& damage) {
@@ -397,12 +385,12 @@ void derive_projections(Database& database, const EventLog& log,
   for (auto table = projected_tables.rbegin(); table != projected_tables.rend(); ++table) {
     database.execute(fmt::format("DROP TABLE IF EXISTS {}", *table));
   }
-  create_projections(database);
+  database.execute(projection_tables);
   log.for_each([&database](const Event& event) { apply(database, event); });
 }
 
 void shadow_projections(Database& database, const EventLog& log) {
-  std::string tables(kTables);
+  std::string tables = projection_tables;
   for (std::size_t at = 0; (at = tables.find("CREATE TABLE", at)) != tables.npos; at += 12) {
     tables.replace(at, 12, "CREATE TEMP TABLE");
   }
@@ -482,7 +470,7 @@ std::vector<FigureRecord> query_figures(const Database& database) {
     FigureRecord figure;
     std::string provenance;
     row.get(figure.name, figure.seq, figure.recorded_at, provenance);
-    figure.provenance = parse(database, provenance);
+    figure.provenance = parse<json>(database, provenance);
     return figure;
   });
 }

@@ -20,8 +20,8 @@ namespace shearcell {
 inline constexpr std::array<std::string_view, 6> projected_tables = {
     "runs", "memberships", "checkpoints", "figures", "manifests", "newest"};
 
-/// Creates the empty tables.
-void create_projections(sqlite::Database& database);
+/// SQL that creates the empty tables.
+extern const char* const projection_tables;
 /// Creates empty tables in memory, for the events of a log that may be damaged or forged. Error
 /// messages call the database `name`.
 sqlite::Database empty_projections(const std::string& name);
@@ -40,8 +40,9 @@ void derive_projections(sqlite::Database& database, const EventLog& log,
 /// tables instead of the stored tables of an older schema. Skips events that cannot be applied.
 void shadow_projections(sqlite::Database& database, const EventLog& log);
 
-/// The rows of a table in ascending order, each cell as an SQL literal.
-using TableRows = std::vector<std::vector<std::string>>;
+/// One text for each column: "NAME = VALUE", with all digits of numbers.
+using TableRow = std::vector<std::string>;
+using TableRows = std::vector<TableRow>;  ///< the rows of a table in ascending order
 
 /// All rows of all tables, so that the tables of two databases can be compared.
 std::map<std::string, TableRows> projection_rows(const sqlite::Database& database);

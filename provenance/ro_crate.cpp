@@ -5,7 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <set>
+#include <map>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -34,21 +34,22 @@ json reference(const std::string& id) {
   return {{"@id", id}};
 }
 
-/// The entities of the crate; each id occurs once.
-class Graph {
- public:
-  /// Adds the entity unless its id is known. Returns a reference to the entity.
-  json add(json entity) {
-    const std::string id = entity.at("@id").get<std::string>();
-    if (known_.insert(id).second) entities_.push_back(std::move(entity));
-    return reference(id);
-  }
-  const json& entities() const { return entities_; }
+using Graph = std::map<std::string, json>;  // the entities of the crate, by id
 
- private:
-  json entities_ = json::array();
-  std::set<std::string> known_;
-};
+/// Adds the entity unless its id is known. Returns a reference to the entity.
+json add(Graph& graph, json entity) {
+  const std::string id = entity.at("@id").get<std::string>();
+  graph.try_emplace(id, std::move(entity));
+  return reference(id);
+}
+
+std::string path_of_checkpoint(const std::string& sha256) {
+  return "checkpoints/" + sha256 + ".h5";
+}
+
+std::string path_of_manifest(const std::string& sha256) {
+  return "manifests/" + sha256 + ".yaml";
+}
 
 json file_entity(const std::string& path, const std::string& name, const std::string& format,
                  std::uint64_t size, const std::string& sha256, const std::string& made,
@@ -66,15 +67,15 @@ json file_entity(const std::string& path, const std::string& name, const std::st
 json add_manifest(Graph& graph, const ManifestText& manifest) {
   // Only the file name is written, because the rest of the path is private.
   const std::string name = fs::path(manifest.path).filename().string();
-  return graph.add(file_entity(crate_path_of_manifest(manifest.sha256), "Manifest " + name,
-                               "application/yaml", manifest.text.size(), manifest.sha256,
-                               manifest.registered_at, "The experiment as it was declared"));
+  return add(graph, file_entity(path_of_manifest(manifest.sha256), "Manifest " + name,
+                                "application/yaml", manifest.text.size(), manifest.sha256,
+                                manifest.registered_at, "The experiment as it was declared"));
 }
 
 json add_checkpoint(Graph& graph, const CheckpointHistory& checkpoint) {
   const CheckpointRecord& c = checkpoint.record;
   json entity =
-      file_entity(crate_path_of_checkpoint(c.sha256),
+      file_entity(path_of_checkpoint(c.sha256),
                   fmt::format("State of run {:.12} at cycle {:g}", c.run, c.cycle),
                   "application/x-hdf5", c.size, c.sha256, checkpoint.recorded_at,
                   fmt::format("H5MD 1.1 file with the exact state after {} time steps, {:.9g} s",
@@ -88,14 +89,15 @@ json add_checkpoint(Graph& graph, const CheckpointHistory& checkpoint) {
                                 : "Not in this crate: it was rejected as damaged";
     entity.erase("encodingFormat");
   }
-  return graph.add(std::move(entity));
+  return add(graph, std::move(entity));
 }
 
 /// Adds the program that computed an attempt.
 json add_software(Graph& graph, const Maker& maker) {
   const std::string libraries = fmt::format("{}", fmt::join(maker.libraries, ", "));
   const std::string id = sha256_hex(maker.program + maker.flags + libraries).substr(0, 16);
-  return graph.add(
+  return add(
+      graph,
       {{"@id", "#shearcell-" + id},
        {"@type", "SoftwareApplication"},
        {"name", "shearcell"},
@@ -108,48 +110,47 @@ json add_software(Graph& graph, const Maker& maker) {
 
 json add_host(Graph& graph, const Maker& maker) {
   const std::string machine = maker.system + "; " + maker.machine;
-  return graph.add({{"@id", "#host-" + sha256_hex(maker.host + machine).substr(0, 16)},
-                    {"@type", "Place"},
-                    {"name", maker.host},
-                    {"description", machine}});
+  return add(graph, {{"@id", "#host-" + sha256_hex(maker.host + machine).substr(0, 16)},
+                     {"@type", "Place"},
+                     {"name", maker.host},
+                     {"description", machine}});
 }
 
 /// Adds the seed, the resolved parameters and the number of cycles of a run.
 json add_parameters(Graph& graph, const Stage& stage) {
   json given = json::array();
-  const auto add = [&](const std::string& name, const json& value) {
-    given.push_back(graph.add({{"@id", fmt::format("#parameter-{}-{}", stage.id, name)},
-                               {"@type", "PropertyValue"},
-                               {"name", name},
-                               {"value", value.is_primitive() ? value : json(value.dump())}}));
+  const auto add_one = [&](const std::string& name, const json& value) {
+    given.push_back(add(graph, {{"@id", fmt::format("#parameter-{}-{}", stage.id, name)},
+                                {"@type", "PropertyValue"},
+                                {"name", name},
+                                {"value", value.is_primitive() ? value : json(value.dump())}}));
   };
   for (const auto& [key, value] : stage.resolved.items()) {
     if (key == "parent") continue;  // the parent's checkpoint is added separately
     if (!value.is_object()) {
-      add(key, value);
+      add_one(key, value);
       continue;
     }
-    for (const auto& [name, inner] : value.items()) add(name, inner);
+    for (const auto& [name, inner] : value.items()) add_one(name, inner);
   }
-  if (stage.target_cycles > 0) add("target_cycles", stage.target_cycles);
+  if (stage.target_cycles > 0) add_one("target_cycles", stage.target_cycles);
   return given;
 }
 
-/// The manifests and parameters that the attempts of a run used.
-struct Given {
-  std::vector<std::pair<std::string, json>> manifests;  ///< time of registration, reference
-  json parameters = json::array();
-};
-
-json add_attempt(Graph& graph, const CrateFacts& facts, const RunLineage& stage, std::size_t a,
-                 const Given& given) {
+/// Adds an attempt with the manifests and parameters that it used.
+json add_attempt(Graph& graph, const CrateFacts& facts, const RunLineage& stage, std::size_t a) {
   const Attempt& attempt = stage.attempts[a];
   const bool is_last = a + 1 == stage.attempts.size();
   const std::string end =
       !attempt.ended_at.empty() || is_last ? attempt.ended_at : stage.attempts[a + 1].started_at;
   json objects = json::array();
-  for (const auto& [registered_at, manifest] : given.manifests) {
-    if (end.empty() || registered_at <= end) objects.push_back(manifest);
+  for (const ManifestText& manifest : facts.manifests) {
+    const bool used = std::ranges::any_of(stage.stage.memberships, [&](const Membership& m) {
+      return m.place.manifest == manifest.sha256;
+    });
+    if (used && (end.empty() || manifest.registered_at <= end)) {
+      objects.push_back(add_manifest(graph, manifest));
+    }
   }
   for (const RunLineage& other : facts.stages) {
     const CheckpointHistory* from = other.find(attempt.from_checkpoint);
@@ -157,7 +158,9 @@ json add_attempt(Graph& graph, const CrateFacts& facts, const RunLineage& stage,
       objects.push_back(add_checkpoint(graph, *from));
     }
   }
-  objects.insert(objects.end(), given.parameters.begin(), given.parameters.end());
+  for (json& parameter : add_parameters(graph, stage.stage)) {
+    objects.push_back(std::move(parameter));
+  }
   json results = json::array();
   for (const std::string& sha256 : attempt.checkpoints) {
     results.push_back(add_checkpoint(graph, *stage.find(sha256)));
@@ -183,17 +186,18 @@ json add_attempt(Graph& graph, const CrateFacts& facts, const RunLineage& stage,
       {"result", results}};
   if (!attempt.ended_at.empty()) action["endTime"] = attempt.ended_at;
   if (!error.empty()) action["error"] = error;
-  return graph.add(std::move(action));
+  return add(graph, std::move(action));
 }
 
 json add_licence(Graph& graph, const std::string& licence) {
   const bool chosen = !licence.empty();
-  return graph.add({{"@id", chosen ? licence : "#licence"},
-                    {"@type", "CreativeWork"},
-                    {"name", chosen ? licence : "No licence was chosen"},
-                    {"description", chosen ? "The licence of the data in this crate"
-                                           : "The person who exported these data chose no licence; "
-                                             "ask this person before you use the data."}});
+  return add(graph,
+             {{"@id", chosen ? licence : "#licence"},
+              {"@type", "CreativeWork"},
+              {"name", chosen ? licence : "No licence was chosen"},
+              {"description", chosen ? "The licence of the data in this crate"
+                                     : "The person who exported these data chose no licence; "
+                                       "ask this person before you use the data."}});
 }
 
 std::string title_of(const Stage& stage) {
@@ -202,87 +206,6 @@ std::string title_of(const Stage& stage) {
   return fmt::format("{} {}, seed {}: {} of {} grains (run {:.12})", member.experiment,
                      member.variant, member.seed, stage.kind, stage.grains, stage.id);
 }
-
-}  // namespace
-
-CrateFacts crate_facts(const Store& store, const std::string& run) {
-  CrateFacts facts{run_lineage(store, run), {}};
-  for (const RunLineage& stage : facts.stages) {
-    for (const Membership& member : stage.stage.memberships) {
-      if (std::ranges::count(facts.manifests, member.place.manifest, &ManifestText::sha256) > 0)
-        continue;
-      if (auto manifest = find_manifest(store, member.place.manifest)) {
-        facts.manifests.push_back(std::move(*manifest));
-      }
-    }
-  }
-  return facts;
-}
-
-std::string crate_path_of_checkpoint(const std::string& sha256) {
-  return "checkpoints/" + sha256 + ".h5";
-}
-
-std::string crate_path_of_manifest(const std::string& sha256) {
-  return "manifests/" + sha256 + ".yaml";
-}
-
-json ro_crate_metadata(const CrateFacts& facts) {
-  Graph graph;
-  json actions = json::array();
-  for (const RunLineage& stage : facts.stages) {
-    Given given;
-    for (const ManifestText& manifest : facts.manifests) {
-      const auto states_it = [&](const Membership& m) {
-        return m.place.manifest == manifest.sha256;
-      };
-      if (std::ranges::any_of(stage.stage.memberships, states_it)) {
-        given.manifests.emplace_back(manifest.registered_at, add_manifest(graph, manifest));
-      }
-    }
-    given.parameters = add_parameters(graph, stage.stage);
-    for (std::size_t a = 0; a < stage.attempts.size(); ++a) {
-      actions.push_back(add_attempt(graph, facts, stage, a, given));
-    }
-  }
-  const json licence = add_licence(graph, facts.licence);
-  graph.add({{"@id", kProfile},
-             {"@type", "CreativeWork"},
-             {"name", "Process Run Crate"},
-             {"version", "0.5"}});
-  json parts = json::array();
-  for (const json& entity : graph.entities()) {
-    if (entity.at("@type") == "File") parts.push_back(reference(entity.at("@id")));
-  }
-  std::string newest;
-  for (const RunLineage& stage : facts.stages) newest = std::max(newest, stage.stage.updated_at);
-  const Stage& stage = facts.stages.back().stage;
-  json all = json::array();
-  all.push_back({{"@id", kCrateMetadata},
-                 {"@type", "CreativeWork"},
-                 {"conformsTo", reference(kCrateSpecification)},
-                 {"about", reference("./")}});
-  all.push_back(
-      {{"@id", "./"},
-       {"@type", "Dataset"},
-       {"name", title_of(stage)},
-       {"description",
-        fmt::format("Checkpoints of run {} and of the stages before it, with the program, the "
-                    "machines, the manifests and the parameters that made them",
-                    stage.id)},
-       {"identifier", crate_identifier(stage.id)},
-       {"datePublished", newest},
-       {"license", licence},
-       {"conformsTo", json::array({reference(kProfile)})},
-       {"hasPart", parts},
-       {"mentions", actions}});
-  all.insert(all.end(), graph.entities().begin(), graph.entities().end());
-  return {{"@context", json::array({kCrateSpecification + std::string("/context"),
-                                    "https://w3id.org/ro/terms/workflow-run/context"})},
-          {"@graph", all}};
-}
-
-namespace {
 
 bool is_crate_of(const fs::path& folder, const std::string& run) {
   const auto text = read_plain(folder / kCrateMetadata, StoreLimits::value_bytes);
@@ -306,6 +229,66 @@ void make_folder(const fs::path& path) {
 
 }  // namespace
 
+CrateFacts crate_facts(const Store& store, const std::string& run) {
+  CrateFacts facts{run_lineage(store, run), {}};
+  for (const RunLineage& stage : facts.stages) {
+    for (const Membership& member : stage.stage.memberships) {
+      if (std::ranges::count(facts.manifests, member.place.manifest, &ManifestText::sha256) > 0)
+        continue;
+      if (auto manifest = find_manifest(store, member.place.manifest)) {
+        facts.manifests.push_back(std::move(*manifest));
+      }
+    }
+  }
+  return facts;
+}
+
+json ro_crate_metadata(const CrateFacts& facts) {
+  Graph graph;
+  json actions = json::array();
+  for (const ManifestText& manifest : facts.manifests) add_manifest(graph, manifest);
+  for (const RunLineage& stage : facts.stages) {
+    for (std::size_t a = 0; a < stage.attempts.size(); ++a) {
+      actions.push_back(add_attempt(graph, facts, stage, a));
+    }
+  }
+  const json licence = add_licence(graph, facts.licence);
+  add(graph, {{"@id", kProfile},
+              {"@type", "CreativeWork"},
+              {"name", "Process Run Crate"},
+              {"version", "0.5"}});
+  json parts = json::array();
+  for (const auto& [id, entity] : graph) {
+    if (entity.at("@type") == "File") parts.push_back(reference(id));
+  }
+  std::string newest;
+  for (const RunLineage& stage : facts.stages) newest = std::max(newest, stage.stage.updated_at);
+  const Stage& stage = facts.stages.back().stage;
+  json all = json::array();
+  all.push_back({{"@id", kCrateMetadata},
+                 {"@type", "CreativeWork"},
+                 {"conformsTo", reference(kCrateSpecification)},
+                 {"about", reference("./")}});
+  all.push_back(
+      {{"@id", "./"},
+       {"@type", "Dataset"},
+       {"name", title_of(stage)},
+       {"description",
+        fmt::format("Checkpoints of run {} and of the stages before it, with the program, the "
+                    "machines, the manifests and the parameters that made them",
+                    stage.id)},
+       {"identifier", crate_identifier(stage.id)},
+       {"datePublished", newest},
+       {"license", licence},
+       {"conformsTo", json::array({reference(kProfile)})},
+       {"hasPart", parts},
+       {"mentions", actions}});
+  for (auto& [id, entity] : graph) all.push_back(std::move(entity));
+  return {{"@context", json::array({kCrateSpecification + std::string("/context"),
+                                    "https://w3id.org/ro/terms/workflow-run/context"})},
+          {"@graph", all}};
+}
+
 std::vector<std::string> write_ro_crate(const Store& store, const CrateFacts& facts,
                                         const fs::path& folder) {
   make_folder(folder);
@@ -317,22 +300,18 @@ std::vector<std::string> write_ro_crate(const Store& store, const CrateFacts& fa
   for (const char* subfolder : {"checkpoints", "manifests"}) make_folder(folder / subfolder);
   for (const RunLineage& stage : facts.stages) {
     for (const CheckpointHistory& c : stage.checkpoints) {
-      // An earlier export may have written checkpoints that were pruned or rejected later.
-      if (!c.kept()) fs::remove(folder / crate_path_of_checkpoint(c.sha256()));
-    }
-  }
-  std::set<std::string> done;  // a forged store may list a file in two stages
-  for (const RunLineage& stage : facts.stages) {
-    for (const CheckpointHistory& c : stage.checkpoints) {
-      if (!c.kept() || !done.insert(c.sha256()).second) continue;
-      const std::string path = crate_path_of_checkpoint(c.sha256());
+      const std::string path = path_of_checkpoint(c.sha256());
+      if (!c.kept()) {  // an earlier export may have written the file
+        fs::remove(folder / path);
+        continue;
+      }
       const std::vector<std::byte> bytes = store.read_file(c.record);
       write_output(folder / path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
       written.push_back(path);
     }
   }
   for (const ManifestText& manifest : facts.manifests) {
-    written.push_back(crate_path_of_manifest(manifest.sha256));
+    written.push_back(path_of_manifest(manifest.sha256));
     write_output(folder / written.back(), manifest.text);
   }
   // The metadata file describes the other files, so it is written last. Invalid UTF-8 is replaced.

@@ -22,9 +22,6 @@ struct CrateFacts {
 /// Collects the content of a crate. Throws NotFound for an unknown run.
 CrateFacts crate_facts(const Store& store, const std::string& run);
 
-/// Paths in the crate. They contain only hashes, so forged records cannot name files elsewhere.
-std::string crate_path_of_checkpoint(const std::string& sha256);
-std::string crate_path_of_manifest(const std::string& sha256);
 inline constexpr const char* kCrateMetadata = "ro-crate-metadata.json";
 
 /// The content of ro-crate-metadata.json. Equal logs give equal bytes.

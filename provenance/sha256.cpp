@@ -6,9 +6,7 @@
 
 #include <array>
 #include <bit>
-#include <fstream>
 #include <stdexcept>
-#include <vector>
 
 namespace shearcell {
 
@@ -47,18 +45,6 @@ std::string sha256_hex(std::span<const std::byte> data) {
 
 std::string sha256_hex(std::string_view text) {
   return Sha256().add(text).hex();
-}
-
-std::string sha256_hex_of_file(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  Sha256 sha;
-  std::vector<char> buffer(1 << 20);
-  while (in) {
-    in.read(buffer.data(), static_cast<std::streamsize>(buffer.size()));
-    sha.add(std::string_view(buffer.data(), static_cast<std::size_t>(in.gcount())));
-  }
-  if (!in.eof()) throw std::runtime_error(file.string() + ": cannot be read");
-  return sha.hex();
 }
 
 bool is_sha256_hex(std::string_view text) {

@@ -5,7 +5,6 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <memory>
 #include <span>
 #include <string>
@@ -43,9 +42,6 @@ class Sha256 {
 
 std::string sha256_hex(std::span<const std::byte> data);
 std::string sha256_hex(std::string_view text);
-
-/// The digest of a whole file. Throws std::runtime_error when the file cannot be read.
-std::string sha256_hex_of_file(const std::filesystem::path& file);
 
 /// Whether the text is 64 lower-case hex digits.
 bool is_sha256_hex(std::string_view text);

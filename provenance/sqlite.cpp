@@ -144,11 +144,6 @@ void Database::fail(int code, std::string_view doing) const {
   require_journal_can_be_played_back(code);
   const char* reason = handle_ ? sqlite3_errmsg(handle_.get()) : sqlite3_errstr(code);
   switch (code & 0xff) {
-    case SQLITE_NOTADB:
-      throw StoreDamaged(fmt::format(
-          "{}: this is not an SQLite database, so it is not the log of a store; restore the file "
-          "from a backup, or choose another store folder",
-          name_));
     case SQLITE_BUSY:
     case SQLITE_LOCKED:
       throw MachineError(
@@ -165,6 +160,7 @@ void Database::fail(int code, std::string_view doing) const {
           "or reads; restore the database from a backup",
           name_, StoreLimits::value_bytes >> 20));
     case SQLITE_CORRUPT:
+    case SQLITE_NOTADB:
     case SQLITE_CONSTRAINT:
     case SQLITE_ERROR:  // our SQL fails only on tables that another program made
     case SQLITE_MISMATCH:
@@ -182,6 +178,13 @@ void Database::execute(const std::string& sql) {
   errno = 0;
   const int code = sqlite3_exec(handle_.get(), sql.c_str(), nullptr, nullptr, nullptr);
   if (code != SQLITE_OK) fail(code, "write");
+}
+
+void Database::create_tables(const std::string& sql) {
+  WriteTransaction lock(*this);
+  // Another process may have created the tables while this process waited for the lock.
+  if (integer("SELECT count(*) FROM sqlite_schema") == 0) execute(sql);
+  lock.commit();
 }
 
 std::int64_t Database::integer(const std::string& sql) {
@@ -284,13 +287,11 @@ std::vector<std::string> Statement::cells() const {
   std::vector<std::string> row;
   for (int column = 0; column < sqlite3_column_count(handle_.get()); ++column) {
     const int type = sqlite3_column_type(handle_.get(), column);  // text() changes the type
-    if (type == SQLITE_FLOAT) {
-      row.push_back(fmt::format("{:a}", f64(column)));  // hexadecimal keeps every bit
-    } else if (type == SQLITE_INTEGER) {
-      row.push_back(text(column));
-    } else {
-      row.push_back(type == SQLITE_NULL ? "NULL" : "'" + text(column) + "'");
-    }
+    const std::string value = type == SQLITE_FLOAT  ? fmt::format("{:a}", f64(column))
+                              : type == SQLITE_NULL ? "NULL"
+                              : type == SQLITE_TEXT ? "'" + text(column) + "'"
+                                                    : text(column);
+    row.push_back(fmt::format("{} = {}", sqlite3_column_name(handle_.get(), column), value));
   }
   return row;
 }

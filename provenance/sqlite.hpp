@@ -51,6 +51,8 @@ class Database {
 
   /// Runs SQL statements and ignores the rows that they return.
   void execute(const std::string& sql);
+  /// Runs SQL statements in one transaction, unless the database has tables.
+  void create_tables(const std::string& sql);
   /// The value in the first column of the first row that a query returns.
   std::int64_t integer(const std::string& sql);
   const std::string& name() const { return name_; }
@@ -116,7 +118,7 @@ class Statement {
     while (step()) found.push_back(read(*this));
     return found;
   }
-  /// The current row as SQL literals with all digits, for comparing rows.
+  /// The columns of the current row as "NAME = VALUE", with all digits, for comparing rows.
   std::vector<std::string> cells() const;
 
  private:

@@ -238,7 +238,7 @@ std::string Store::register_manifest(std::string_view text, std::string_view pat
   const bool known = newest.step();
   if (log_.version(stream) > 0 && (!known || newest.text(0) == stream)) return sha256;
   NewEvent event =
-      encode(events::ManifestRegistered{sha256, std::string(path), std::string(text), info});
+      encode(events::ManifestRegistered{{sha256, std::string(path), std::string(text)}, info});
   // The manifest with the latest recorded_at is the newest version of the experiment.
   if (known) event.not_before = newest.text(1);
   append(stream, event, lock);
@@ -248,17 +248,17 @@ std::string Store::register_manifest(std::string_view text, std::string_view pat
 
 std::string Store::register_packing(std::string_view text, std::string_view path) {
   std::string sha256 = sha256_hex(text);
-  const std::string stream = packing_stream(sha256);
+  const std::string stream = "packing/" + sha256;
   Writing lock(*this);
   if (log_.version(stream) > 0) return sha256;
-  append(stream, encode(events::PackingRegistered{sha256, std::string(path), std::string(text)}),
+  append(stream, encode(events::PackingRegistered{{sha256, std::string(path), std::string(text)}}),
          lock);
   lock.commit();
   return sha256;
 }
 
 std::pair<std::string, std::string> Store::packing_text(const std::string& sha256) const {
-  for (const Event& event : events(packing_stream(sha256), events::PackingRegistered::kType)) {
+  for (const Event& event : events("packing/" + sha256, events::PackingRegistered::kType)) {
     auto found = std::get<events::PackingRegistered>(events::decode(event));
     if (sha256_hex(found.text) == sha256) return {std::move(found.text), std::move(found.path)};
   }
@@ -308,7 +308,8 @@ std::uint64_t Store::start_stage(const std::string& id, const json& host,
   }
   const std::uint64_t attempt = known->attempts + 1;
   const json process = {{"host", self_.host}, {"pid", self_.pid}, {"token", self_.token}};
-  events::RunStarted started{attempt, host, process, std::nullopt, bits_version};
+  const events::AttemptBegun attempted{attempt, host, process, bits_version};
+  events::RunStarted started{attempted};
   if (!parent_checkpoint.empty()) started.parent_checkpoint = parent_checkpoint;
   events::Any begun = std::move(started);
   std::uint64_t from_step = 0;
@@ -316,8 +317,7 @@ std::uint64_t Store::start_stage(const std::string& id, const json& host,
     const auto from = query_checkpoint(database_, id, *from_sha256);
     if (!from) throw unknown_checkpoint(id, *from_sha256);
     from_step = from->step;
-    begun = events::RunResumed{
-        attempt, host, process, {from->sha256, from->step, from->cycle}, bits_version};
+    begun = events::RunResumed{attempted, {from->sha256, from->step, from->cycle}};
   }
   if (known->step > from_step && !fill) {
     throw ConcurrencyConflict(fmt::format(
@@ -471,19 +471,19 @@ std::vector<CheckpointRecord> Store::checkpoints(const std::string& id, Listed l
 }
 
 std::vector<std::byte> Store::read_file(const CheckpointRecord& record) const {
-  const auto require_kept = [&] {
-    const std::scoped_lock guard(mutex_);
-    if (!is_pruned_now(database_, record)) return;
-    throw FilePruned(fmt::format(
-        "{}: checkpoint {:.12} (run {:.12}, cycle {:g}) was pruned; restore it with `shearcell "
-        "regenerate {:.12}`",
-        (folder_ / record.file).string(), record.sha256, record.run, record.cycle, record.sha256));
-  };
-  if (record.state == CheckpointState::pruned) require_kept();
   try {
-    return objects_.get(record.sha256, record.size);
+    if (record.state != CheckpointState::pruned) return objects_.get(record.sha256, record.size);
   } catch (const StoreDamaged&) {
-    require_kept();
+  }
+  {
+    const std::scoped_lock guard(mutex_);
+    if (is_pruned_now(database_, record)) {
+      throw FilePruned(fmt::format(
+          "{}: checkpoint {:.12} (run {:.12}, cycle {:g}) was pruned; restore it with `shearcell "
+          "regenerate {:.12}`",
+          (folder_ / record.file).string(), record.sha256, record.run, record.cycle,
+          record.sha256));
+    }
   }
   return objects_.get(record.sha256, record.size);  // the file may have been regenerated meanwhile
 }

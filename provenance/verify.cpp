@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Verifies a store: hash chain, checkpoint files, derived tables.
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -72,20 +71,17 @@ std::string event_name(std::uint64_t seq) {
 
 /// Checks that the log contains the earlier head. If so, no event up to this head was changed.
 void check_extends(const EventLog& log, const Head& earlier, VerifyReport& report) {
-  const std::string event = event_name(earlier.seq);
-  if (report.head.seq < earlier.seq) {
-    return add_error(report, event,
-                     fmt::format("the log was cut off: it ends at event {}, before the given head, "
-                                 "{}; restore the log from a backup",
-                                 report.head.seq, event));
-  }
   const std::string found = log.hash_at(earlier.seq);
   if (found == earlier.hash) return;
-  add_error(
-      report, event,
-      fmt::format("the log was rewritten, or the given head is wrong: {} has hash {}, but the "
-                  "given head has {}; check the head, or restore the log from a backup",
-                  event, found, earlier.hash));
+  const std::string why =
+      found.empty()
+          ? fmt::format("the log was cut off: it ends at event {}", report.head.seq)
+          : fmt::format(
+                "the log was rewritten, or the given head is wrong: the event has hash {}, "
+                "but the given head has {}",
+                found, earlier.hash);
+  add_error(report, event_name(earlier.seq),
+            why + "; check the given head, or restore the log from a backup");
 }
 
 /// The tables derived from the events. Events that cannot be applied are reported and skipped.
@@ -101,49 +97,29 @@ sqlite::Database derive(const EventLog& log, const std::string& name, VerifyRepo
   return fresh;
 }
 
-/// Part of a table cell: at most 60 bytes that begin shortly before `place`.
-std::string excerpt(const std::string& cell, std::size_t place) {
-  const std::size_t begin = place > 40 ? place - 20 : 0;
-  const std::string part = cell.substr(begin, 60);
-  return fmt::format("{}{}{}", begin > 0 ? "..." : "", part,
-                     begin + part.size() < cell.size() ? "..." : "");
-}
-
 /// Describes the first difference between two tables. `expected` and `found` are the rows at which
-/// the tables differ; a row is null if its table has ended. Rows begin with their keys.
-std::string row_difference(const sqlite::Database& database, const std::string& table,
-                           const std::vector<std::string>* expected,
-                           const std::vector<std::string>* found) {
-  const std::vector<std::string>* first = expected == nullptr ? found : expected;
-  if (expected != nullptr && found != nullptr && *found < *expected) first = found;
-  std::vector<std::string> names, key;
-  sqlite::Statement column(database, "PRAGMA table_info(" + table + ")");
-  while (column.step()) {
-    names.push_back(column.text(1));
-    if (column.u64(5) > 0) key.push_back(first->at(names.size() - 1));
+/// the tables differ; a row is null if its table has ended.
+std::string row_difference(const TableRow* expected, const TableRow* found) {
+  const bool surplus = expected == nullptr || (found != nullptr && *found < *expected);
+  const std::string row = fmt::format("row ({})", (surplus ? found : expected)->front());
+  if (expected == nullptr || found == nullptr || expected->front() != found->front()) {
+    return row + (surplus ? " should not be there" : " is missing");
   }
-  const std::string row = fmt::format("row ({})", fmt::join(key, ", "));
-  const bool alone =
-      expected == nullptr || found == nullptr || expected->size() != found->size() ||
-      !std::equal(key.begin(), key.end(), (first == found ? expected : found)->begin());
-  if (alone) return row + (first == found ? " should not be there" : " is missing");
   const auto [a, b] = std::ranges::mismatch(*expected, *found);
-  const auto [x, y] = std::ranges::mismatch(*a, *b);
-  const auto place = static_cast<std::size_t>(x - a->begin());
-  return fmt::format("{} should have {} = {}, but has {}", row,
-                     names.at(static_cast<std::size_t>(a - expected->begin())), excerpt(*a, place),
-                     excerpt(*b, place));
+  const auto place = std::ranges::mismatch(*a, *b).in1 - a->begin();
+  const auto excerpt = [begin = place > 40 ? static_cast<std::size_t>(place) - 20 : 0](
+                           const std::string& cell) { return cell.substr(begin, 60); };
+  return fmt::format("{} should have {}, but has {}", row, excerpt(*a), excerpt(*b));
 }
 
-void compare_tables(const sqlite::Database& database, const Rows& stored, const Rows& derived,
-                    VerifyReport& report) {
+void compare_tables(const Rows& stored, const Rows& derived, VerifyReport& report) {
   for (const auto& [table, rows] : derived) {
     const TableRows& found = stored.at(table);
-    const auto [a, b] = std::mismatch(rows.begin(), rows.end(), found.begin(), found.end());
+    const auto [a, b] = std::ranges::mismatch(rows, found);
     if (a == rows.end() && b == found.end()) continue;
     add_error(report, "table " + table,
               fmt::format("it differs from the events: {}; run `rebuild`",
-                          row_difference(database, table, a == rows.end() ? nullptr : &*a,
+                          row_difference(a == rows.end() ? nullptr : &*a,
                                          b == found.end() ? nullptr : &*b)));
   }
 }
@@ -244,7 +220,7 @@ VerifyReport Store::verify(const std::optional<Head>& against) const {
     for (Stage& stage : query_stages(fresh)) runs.emplace(stage.id, std::move(stage));
     records = query_all_checkpoints(fresh);
     log_was_read = true;
-    compare_tables(fresh, projection_rows(database_), projection_rows(fresh), report);
+    compare_tables(projection_rows(database_), projection_rows(fresh), report);
   } catch (const StoreDamaged& damage) {
     add_error(report, database_.name(),
               without_path(database_.name(), damage.what()) +

@@ -337,7 +337,8 @@ ComputedFigure draw_figure(Store& store, const WantedFigure& wanted, const Figur
   write(".verdict.csv", claims ? to_csv(entered_table(made.verdicts)) : "");
 
   for (const auto& file : made.files) {
-    made.lineage["outputs"][file.filename().string()] = sha256_hex_of_file(file);
+    made.lineage["outputs"][file.filename().string()] =
+        sha256_hex(read_plain(file, SIZE_MAX - 1).value());
   }
   write(".lineage.json", lineage_text(made.lineage));
 

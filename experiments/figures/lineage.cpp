@@ -297,13 +297,13 @@ json to_json(const FigureLineage& lineage) {
 }
 
 std::optional<PublishedFile> find_published(const Store& store, const std::filesystem::path& file) {
-  if (!std::filesystem::is_regular_file(file)) {
-    throw NotFound(file.string() + ": there is no such regular file");
+  const auto content =
+      read_plain(std::filesystem::weakly_canonical(file), StoreLimits::published_bytes);
+  if (!content) {
+    throw NotFound(file.string() +
+                   ": there is no such file, or it is larger than any file of a figure");
   }
-  if (std::filesystem::file_size(file) > StoreLimits::published_bytes) {
-    throw UsageError(file.string() + ": larger than any file of a figure");
-  }
-  const std::string sha256 = sha256_hex_of_file(file);
+  const std::string sha256 = sha256_hex(*content);
   const std::string name = file.filename().string();
   std::vector<FigureRecord> records = figure_records(store);
   std::reverse(records.begin(), records.end());  // the newest first

@@ -97,7 +97,7 @@ struct PublishedFile {
 
 /// Finds the record of the figure to which a file belongs: by the SHA-256 of the file's bytes, else
 /// by the lineage file in the same folder, else by the file's name. Returns nothing if the store
-/// has no such record. Throws NotFound if the path is not a regular file, and UsageError if the
+/// has no such record. Throws NotFound if the path is not a readable regular file, or if the
 /// file is larger than any file of a figure.
 std::optional<PublishedFile> find_published(const Store& store, const std::filesystem::path& file);
 

@@ -79,11 +79,9 @@ std::string text_of(const Descriptor& file, std::size_t most = std::string::npos
 }  // namespace
 
 std::string shell_word(std::string_view text) {
-  const auto plain = [](char c) {
-    return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') ||
-           std::string_view("./-_+=,:@").find(c) != std::string_view::npos;
-  };
-  if (!text.empty() && std::ranges::all_of(text, plain)) return std::string(text);
+  constexpr const char* plain =
+      "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz./-_+=,:@";
+  if (!text.empty() && text.find_first_not_of(plain) == text.npos) return std::string(text);
   std::string quoted = "'";
   for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return quoted + "'";

@@ -47,6 +47,11 @@ std::optional<std::string> beginning_of(const fs::path& path, std::size_t most) 
 
 Descriptor::Descriptor(Descriptor&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
 
+Descriptor& Descriptor::operator=(Descriptor&& other) noexcept {
+  std::swap(number_, other.number_);
+  return *this;
+}
+
 Descriptor::~Descriptor() {
   if (number_ >= 0) close(number_);
 }
@@ -102,13 +107,12 @@ void remove_leftovers(const fs::path& folder, bool below) {
 }
 
 void replace_file(const Descriptor& folder, const std::filesystem::path& path,
-                  std::span<const std::byte> bytes, const std::string& temporary,
-                  Durability durability) {
+                  std::span<const std::byte> bytes, bool synced) {
   static std::atomic<unsigned> counter = 0;
   std::string name;
   int number = -1;
   do {
-    name = temporary + std::to_string(getpid()) + '-' + std::to_string(counter++);
+    name = ".tmp-" + std::to_string(getpid()) + '-' + std::to_string(counter++);
     number = openat(folder.get(), name.c_str(),
                     O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
   } while (number < 0 && errno == EEXIST);
@@ -117,7 +121,7 @@ void replace_file(const Descriptor& folder, const std::filesystem::path& path,
   flock(file.get(), LOCK_EX);  // tells remove_leftovers() that the file is in use
   try {
     write_all(file, bytes, path);
-    if (durability == Durability::synced) sync(file, path);
+    if (synced) sync(file, path);
     if (renameat(folder.get(), name.c_str(), folder.get(), path.filename().c_str()) != 0) {
       fail_on(path, "rename the new file");
     }
@@ -125,7 +129,7 @@ void replace_file(const Descriptor& folder, const std::filesystem::path& path,
     unlinkat(folder.get(), name.c_str(), 0);
     throw;
   }
-  if (durability == Durability::synced) sync(folder, path);
+  if (synced) sync(folder, path);
 }
 
 std::optional<std::string> read_plain(const fs::path& path, std::size_t limit) {
@@ -134,18 +138,15 @@ std::optional<std::string> read_plain(const fs::path& path, std::size_t limit) {
   return bytes;
 }
 
-void require_ours(const fs::path& path, const Recognize& ours) {
+void require_ours(const fs::path& path, const std::function<bool(std::string_view)>& ours) {
   std::error_code failure;
   const fs::file_type type = fs::symlink_status(path, failure).type();
   if (type == fs::file_type::not_found) return;
   if (failure) throw std::system_error(failure, path.string() + ": cannot write");
-  if (type == fs::file_type::directory) {
-    throw NotOurs(path.string() +
-                  ": this is a folder, but the output is a file; choose another path with --out");
-  }
   if (type != fs::file_type::regular) {
     throw NotOurs(path.string() +
-                  ": this is a link or device; remove it, or write elsewhere with --out");
+                  ": this is a folder, link or device, but the output is a file; choose another "
+                  "path with --out");
   }
   const auto beginning = beginning_of(path, 4096);
   if (beginning && ours(*beginning)) return;
@@ -161,8 +162,7 @@ void write_output(const fs::path& path, std::string_view bytes) {
   const Descriptor folder(open(parent.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC));
   if (!folder.valid()) fail_on(path, "write");
   remove_leftovers(parent);
-  replace_file(folder, path, bytes_of(bytes), '.' + path.filename().string() + ".tmp-",
-               Durability::renamed);
+  replace_file(folder, path, bytes_of(bytes), false);
 }
 
 NewFile::NewFile(const fs::path& path)
@@ -181,19 +181,10 @@ void NewFile::add(std::string_view text) {
 }
 
 TemporaryFolder::TemporaryFolder(const std::string& prefix) {
-  fs::path whole = prefix + std::to_string(getpid()) + "-XXXXXX";
-  const bool named = whole.is_absolute();
-  if (!named) {
-    std::error_code missing;
-    const fs::path folder = fs::temp_directory_path(missing);
-    if (missing) {
-      const char* set = std::getenv("TMPDIR");
-      throw std::system_error(missing, std::string(set != nullptr ? set : "/tmp") +
-                                           ": cannot use the folder for temporary files; create "
-                                           "it, or set TMPDIR to another folder");
-    }
-    whole = folder / whole;
-  }
+  const bool named = fs::path(prefix).is_absolute();
+  const char* set = std::getenv("TMPDIR");
+  const fs::path whole =
+      fs::path(set != nullptr ? set : "/tmp") / (prefix + std::to_string(getpid()) + "-XXXXXX");
   remove_leftovers(whole.parent_path());
   std::string pattern = whole;
   if (mkdtemp(pattern.data()) == nullptr) {

@@ -20,7 +20,7 @@ class Descriptor {
  public:
   explicit Descriptor(int number) : number_(number) {}
   Descriptor(Descriptor&& other) noexcept;
-  Descriptor& operator=(Descriptor&&) = delete;
+  Descriptor& operator=(Descriptor&& other) noexcept;
   ~Descriptor();
   int get() const { return number_; }
   bool valid() const { return number_ >= 0; }
@@ -41,22 +41,17 @@ std::vector<std::byte> read_all(const Descriptor& file, std::size_t size,
 /// Calls fsync on a file or folder. Errors are thrown by fail_on().
 void sync(const Descriptor& file, const std::filesystem::path& path);
 
-enum class Durability {
-  renamed,  ///< a reader sees the old file or the complete new file
-  synced    ///< like `renamed`, and the new file survives a power cut
-};
-
 /// Deletes the temporary files and folders that killed programs left in `folder` and, if `below` is
 /// true, in its subfolders. Their names are ".tmp-<pid>-*" or ".*.tmp-<pid>-*". A file or
 /// folder is kept while process <pid> runs or any process, perhaps in a container, has locked it.
 void remove_leftovers(const std::filesystem::path& folder, bool below = false);
 
-/// Writes `bytes` to a temporary file in the open `folder`, named `temporary` + "<pid>-<n>", with
-/// mode 0666 minus umask. Then renames it to the last component of `path`; an existing file or link
-/// is replaced. After an error, deletes the temporary file and throws as fail_on() does.
+/// Writes `bytes` to a temporary file in the open `folder`, named ".tmp-<pid>-<n>", with mode 0666
+/// minus umask. Then renames it to the last component of `path`; an existing file or link is
+/// replaced. If `synced` is true, the new file survives a power cut. After an error, deletes the
+/// temporary file and throws as fail_on() does.
 void replace_file(const Descriptor& folder, const std::filesystem::path& path,
-                  std::span<const std::byte> bytes, const std::string& temporary,
-                  Durability durability);
+                  std::span<const std::byte> bytes, bool synced);
 
 /// Thrown when the output path names a file, folder or link that this program did not make.
 class NotOurs : public std::runtime_error {
@@ -68,12 +63,11 @@ class NotOurs : public std::runtime_error {
 /// missing, a link or a pipe, or cannot be read.
 std::optional<std::string> read_plain(const std::filesystem::path& path, std::size_t limit);
 
-/// Says whether this program wrote the file that begins with these bytes (at most 4096).
-using Recognize = std::function<bool(std::string_view beginning)>;
-
-/// Throws NotOurs if `path` exists and is not a regular file that `ours` recognizes. Throws
-/// std::system_error when the type of the file cannot be determined.
-void require_ours(const std::filesystem::path& path, const Recognize& ours);
+/// Throws NotOurs if `path` exists and is not a regular file that this program wrote. `ours` says
+/// this from the first bytes of the file (at most 4096). Throws std::system_error when the type of
+/// the file cannot be determined.
+void require_ours(const std::filesystem::path& path,
+                  const std::function<bool(std::string_view)>& ours);
 
 /// Writes a file with replace_file(), so a reader sees the old file or the complete new file.
 /// Creates the folder of `path` if it is missing.

@@ -195,7 +195,7 @@ TEST_F(CommandLineTable, OverwritesOnlyItsOwnCsvFiles) {
     expect(0, {"table", "--per", "run", "--out", "runs.csv"});
     EXPECT_EQ(read_bytes(path("runs.csv")), printed.out);
   }
-  expect_refused({"table", "--out", "/"}, {"/: this is a folder, but the output is a file"});
+  expect_refused({"table", "--out", "/"}, {"/: this is a folder, link or device"});
   const std::string rows = expect(0, {"table"}).out;
   for (const char* name : {"-", "/dev/stdout"}) {
     EXPECT_EQ(expect(0, {"table", "--out", name}).out, rows) << name;

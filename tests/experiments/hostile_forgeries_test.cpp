@@ -64,7 +64,7 @@ std::vector<Case> forged_events() {
                "started this run from the wrong state"),
       reported("sha256_of_a_manifest", "verify", 4,
                event("ManifestRegistered", [](json& b) { b["sha256"] = std::string(64, 'a'); }),
-               "the SHA-256 of the manifest's text differs"),
+               "the SHA-256 of the registered text differs"),
       reported("parent", "verify", 4, member("/parent", ""), "parent"),
       reported("kind", "verify", 4, member("/kind", "stiffen"), "stiffen"),
       reported("parameters", "verify", 4, member("/resolved/parameters/pressure_Pa", 10.0),

@@ -142,7 +142,7 @@ std::vector<std::string> event_seeds() {
   add(events::RunFailed{"x", nlohmann::json::object()});
   add(events::CheckpointPruned{{checkpoint}});
   add(events::CheckpointRejected{checkpoint.sha256, 1, "x"});
-  add(events::RunResumed{2, nlohmann::json::object(), {}, {checkpoint.sha256, 1, 1}});
+  add(events::RunResumed{{2, nlohmann::json::object(), {}}, {checkpoint.sha256, 1, 1}});
   seeds.push_back(seeds[1] + text_of_events(later, ""));
   return seeds;
 }

@@ -99,12 +99,7 @@ void take_packing(Input input) {
 
 // Lines of events: upcast, fold, query.
 void take_events(Input input) {
-  static sqlite::Database database = [] {
-    sqlite::Database fresh = sqlite::Database::in_memory();
-    fresh.execute("PRAGMA foreign_keys=ON");
-    create_projections(fresh);
-    return fresh;
-  }();
+  static sqlite::Database database = empty_projections("fresh");
   const sqlite::WriteTransaction undone(database);
   for (const Event& event : forged_events(text_of(input))) {
     attempt<StoreDamaged>([&] { apply(database, event); });

@@ -143,7 +143,7 @@ TEST_F(Lineage, ARegeneratedCheckpointIsSoundAgain) {
 
 TEST_F(Lineage, AStartMayNameItsFirstState) {
   const std::string packing = store_.checkpoints(history_.packing).at(0).sha256;
-  append_to_run(store_, history_.sheared, events::encode(events::RunStarted{5, {}, {}, packing}));
+  append_to_run(store_, history_.sheared, events::encode(events::RunStarted{{5, {}, {}}, packing}));
   const Attempt named = run_lineage(store_, history_.sheared).back().attempts.back();
   EXPECT_EQ(named.from_run, history_.packing);
   EXPECT_EQ(named.from_checkpoint, packing);

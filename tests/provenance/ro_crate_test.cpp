@@ -154,7 +154,7 @@ TEST_F(Crate, FollowsNoLinkOutOfItsFolder) {
                std::invalid_argument);
   EXPECT_TRUE(fs::is_empty(outside));
   fs::remove(crate_ / "checkpoints");
-  const fs::path manifest = crate_ / crate_path_of_manifest(sha256_hex("manifest"));
+  const fs::path manifest = crate_ / "manifests" / (sha256_hex("manifest") + ".yaml");
   fs::remove(manifest);
   write_bytes(outside / "precious", "precious");
   fs::create_symlink(outside / "precious", manifest);
@@ -171,13 +171,14 @@ TEST_F(Crate, APrunedCheckpointIsListedAndNotCopied) {
   fs::remove_all(pruned);
   store_.prune({record});
   write_ro_crate(store_, crate_facts(store_, history_.sheared), pruned);
-  EXPECT_FALSE(fs::exists(pruned / crate_path_of_checkpoint(record.sha256)));
+  EXPECT_FALSE(fs::exists(pruned / ("checkpoints/" + record.sha256 + ".h5")));
   const std::string metadata = read_bytes(pruned / "ro-crate-metadata.json");
   EXPECT_TRUE(has(metadata, "#checkpoint-" + record.sha256));
   write_bytes(crate_ / "checkpoints" / "notes", "of the user");
-  EXPECT_TRUE(fs::exists(crate_ / crate_path_of_checkpoint(record.sha256)));
+  EXPECT_TRUE(fs::exists(crate_ / ("checkpoints/" + record.sha256 + ".h5")));
   write_ro_crate(store_, crate_facts(store_, history_.sheared), crate_);
-  EXPECT_FALSE(fs::exists(crate_ / crate_path_of_checkpoint(record.sha256))) << "of an earlier one";
+  EXPECT_FALSE(fs::exists(crate_ / ("checkpoints/" + record.sha256 + ".h5")))
+      << "of an earlier one";
   EXPECT_TRUE(fs::exists(crate_ / "checkpoints" / "notes"));
   store_.restore_checkpoint(record, sample_checkpoint(history_.sheared, record.step));
   EXPECT_TRUE(run_lineage(store_, history_.sheared).back().find(record.sha256)->kept());
