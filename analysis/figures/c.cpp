@@ -12,7 +12,6 @@
 
 #include "analysis/axes.hpp"
 #include "analysis/estimators.hpp"
-#include "analysis/figures/figures.hpp"
 #include "analysis/growth.hpp"
 #include "analysis/plots.hpp"
 #include "analysis/published.hpp"

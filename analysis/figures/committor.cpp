@@ -12,7 +12,6 @@
 #include "analysis/axes.hpp"
 #include "analysis/committor.hpp"
 #include "analysis/estimators.hpp"
-#include "analysis/figures/figures.hpp"
 #include "analysis/growth.hpp"
 #include "analysis/published.hpp"
 #include "analysis/styles.hpp"

@@ -10,7 +10,7 @@
 #include <map>
 
 #include "analysis/estimators.hpp"
-#include "analysis/figures/figures.hpp"
+#include "analysis/figure.hpp"
 #include "analysis/nucleation.hpp"
 #include "analysis/published.hpp"
 #include "analysis/statistics.hpp"

@@ -10,7 +10,7 @@
 #include <string_view>
 
 #include "analysis/expression.hpp"
-#include "analysis/figures/figures.hpp"
+#include "analysis/figure.hpp"
 #include "analysis/plots.hpp"
 #include "analysis/published.hpp"
 
