@@ -12,7 +12,7 @@
 #include <map>
 #include <set>
 
-#include "analysis/binning.hpp"
+#include "analysis/estimators.hpp"
 #include "analysis/published.hpp"
 
 namespace shearcell {
