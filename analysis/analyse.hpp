@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "analysis/crystal.hpp"
@@ -37,9 +38,9 @@ struct GrainMeasures {
   std::vector<std::int32_t> contacts;   ///< contacts with grains and wall grains
   std::vector<double> phi_local;
   std::vector<double> q6;
-  std::vector<Structure> structure;    ///< also set for grains near the walls
-  std::vector<std::uint8_t> interior;  ///< 1 for interior grains, else 0
-  Crystallites crystallites;           ///< of crystalline interior grains
+  std::vector<Structure> structure;       ///< also set for grains near the walls
+  std::vector<std::uint8_t> interior;     ///< 1 for interior grains, else 0
+  std::vector<std::int32_t> crystallite;  ///< crystallites() of crystalline interior grains
 };
 
 struct Analysis {
@@ -53,12 +54,12 @@ struct Analysis {
 /// it, or if the cell is less than 1 d deep.
 Analysis analyse(const Checkpoint& checkpoint);
 
-/// Mean of value_of(i) over interior grains i with a finite value; NaN if no grain has one.
-template <class Value>
-double interior_mean(const GrainMeasures& grains, const Value& value_of) {
+/// Mean of value_of(i) over the grains i with selected[i] != 0 and a finite value; NaN if no grain
+/// has one.
+double mean_over(std::span<const std::uint8_t> selected, const auto& value_of) {
   double sum = 0, count = 0;
-  for (std::size_t i = 0; i < grains.interior.size(); ++i) {
-    const double value = grains.interior[i] != 0 ? value_of(i) : std::nan("");
+  for (std::size_t i = 0; i < selected.size(); ++i) {
+    const double value = selected[i] != 0 ? value_of(i) : std::nan("");
     if (!std::isfinite(value)) continue;
     sum += value;
     ++count;
@@ -66,15 +67,14 @@ double interior_mean(const GrainMeasures& grains, const Value& value_of) {
   return sum / count;
 }
 
-/// Percentage of interior grains i for which holds(i) is true; NaN without interior grains.
-template <class Predicate>
-double percent_of_interior(const GrainMeasures& grains, const Predicate& holds) {
-  return interior_mean(grains, [&](std::size_t i) { return holds(i) ? 100 : 0; });
+/// Percentage of the selected grains i for which holds(i) is true; NaN without selected grains.
+double percent_of(std::span<const std::uint8_t> selected, const auto& holds) {
+  return mean_over(selected, [&](std::size_t i) { return holds(i) ? 100 : 0; });
 }
 
-/// Finds the crystallites among the crystalline interior grains. A Voronoi face connects two grains
-/// if its area is at least `least_share` times the mean cell surface of interior grains.
-Crystallites crystallites_of(const GrainMeasures& grains, const VoronoiDiagram& diagram,
-                             double least_share);
+/// crystallites() of the crystalline interior grains. A Voronoi face connects two grains if its
+/// area is at least `least_share` times the mean cell surface of interior grains.
+std::vector<std::int32_t> crystallites_of(const GrainMeasures& grains,
+                                          const VoronoiDiagram& diagram, double least_share);
 
 }  // namespace shearcell

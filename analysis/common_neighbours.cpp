@@ -153,8 +153,8 @@ std::vector<Provider> lattice_providers() {
   const auto compute = [](const MeasureInput& input) -> nlohmann::json {
     const std::vector<Lattice> lattice = lattices_of(*input.checkpoint);
     const auto percent = [&](Lattice wanted) {
-      return percent_of_interior(input.analysis->grains,
-                                 [&](std::size_t i) { return lattice[i] == wanted; });
+      return percent_of(input.analysis->grains.interior,
+                        [&](std::size_t i) { return lattice[i] == wanted; });
     };
     const double fcc = percent(Lattice::fcc), hcp = percent(Lattice::hcp);
     return {{"cna_crystalline_percent", fcc + hcp},

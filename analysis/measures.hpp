@@ -62,9 +62,9 @@ struct GrainScale {
 };
 
 struct Measure {
-  std::string_view name;  ///< ends in the unit, unless the measure is a count or a pure number
+  std::string name;       ///< ends in the unit, unless the measure is a count or a pure number
   std::string_view unit;  ///< "1" if it has no unit
-  std::string_view meaning;
+  std::string meaning;
   MeasureKind kind = MeasureKind::number;
   std::string_view x = {}, x_unit = {};  ///< x axis of a curve
   GrainScale scale = {};                 ///< used if `kind` is `grains`
@@ -122,7 +122,7 @@ struct Provider {
   /// Returns an object with a value for each measure, by name. A curve is {"x", "y"}; a measure of
   /// each grain is an array. A measure is left out if the run lacks a checkpoint or the shear that
   /// the measure needs.
-  nlohmann::json (*compute)(const MeasureInput& input) = nullptr;
+  std::function<nlohmann::json(const MeasureInput& input)> compute = {};
   std::uint64_t cycles_back = 0;  ///< needs a second checkpoint, this many cycles earlier; 0: no
   ComputedFrom from = ComputedFrom::checkpoint;
   std::string_view cost = {};  ///< computing time of a simulation, in words
