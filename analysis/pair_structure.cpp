@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "analysis/pair_structure.hpp"
-
+// g(r) and S(k) of interior grains.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -19,6 +18,10 @@ namespace shearcell {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
+constexpr double pair_bin_d = 0.02;        // width of the bins in r [d]
+constexpr double pair_reach_d = 5;         // largest r; at most half the depth [d]
+constexpr double wave_bin_per_d = 0.25;    // width of the bins in |k| [1/d]
+constexpr double largest_wave_per_d = 25;  // largest |k| [1/d]
 
 Eigen::Matrix3Xd interior_sites(const MeasureInput& input) {
   const Eigen::Matrix3Xd& grains = input.checkpoint->state.position;
@@ -220,18 +223,6 @@ MeasuredCurve structure_factor(const MeasureInput& input) {
 }
 
 }  // namespace
-
-InteriorRegion interior_region(const Cell& cell, const WallPose& pose) {
-  const double margin = interior_margin(cell);
-  InteriorRegion region;
-  region.tan_theta = pose.tan_theta;
-  region.bottom = pose.bottom + margin;
-  region.height = pose.top - pose.bottom - 2 * margin;
-  region.depth = cell.depth;
-  region.width = cell.width - 2 * margin / pose.cos_theta;
-  region.left = (region.bottom - pose.top) * pose.tan_theta + margin / pose.cos_theta;
-  return region;
-}
 
 std::vector<Provider> pair_structure_providers() {
   return {
