@@ -58,7 +58,7 @@ Analysis analyse(const Checkpoint& checkpoint) {
       .crystalline_percent = percent(Structure::fcc, Structure::hcp),
       .fcc_percent = percent(Structure::fcc),
       .hcp_percent = percent(Structure::hcp),
-      .mean_overlap = contact.mean,
+      .mean_overlap_d = contact.mean,
       .contacts_per_grain = static_cast<double>(contacts) / static_cast<double>(count),
       .crystallites = analysis.crystallites.size.size(),
       .largest_crystallite = static_cast<std::size_t>(analysis.crystallites.largest())};
@@ -77,20 +77,6 @@ std::vector<std::int32_t> crystallites_of(const GrainMeasures& grains,
 
 std::vector<Provider> packing_providers() {
   using enum MeasureKind;
-  const auto scalars_of = [](const MeasureInput& input) -> nlohmann::json {
-    const PackingMeasures& m = input.analysis->measures;
-    return {{"grains", m.grains},  // N is not a measure, because it is a parameter of the run
-            {"interior_grains", m.interior_grains},
-            {"phi", m.phi},
-            {"phi_uncorrected", m.phi_uncorrected},
-            {"crystalline_percent", m.crystalline_percent},
-            {"fcc_percent", m.fcc_percent},
-            {"hcp_percent", m.hcp_percent},
-            {"mean_overlap_d", m.mean_overlap},
-            {"contacts_per_grain", m.contacts_per_grain},
-            {"crystallites", m.crystallites},
-            {"largest_crystallite", m.largest_crystallite}};
-  };
   const auto grains_of = [](const MeasureInput& input) -> nlohmann::json {
     const GrainMeasures& grains = input.analysis->grains;
     std::vector<double> pressure = input.analysis->mechanics.grain_pressure;
@@ -139,7 +125,8 @@ std::vector<Provider> packing_providers() {
                      .words = "contacts per grain"},
                     {"crystallites", "1", "number of crystallites of interior grains", count},
                     {"largest_crystallite", "1", "grains in the largest crystallite", count}},
-       .compute = scalars_of,
+       .compute =
+           [](const MeasureInput& input) { return nlohmann::json(input.analysis->measures); },
        .read_more =
            [](const nlohmann::json&, Measures& measures) {
              const double phi = measures.number("phi");

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <nlohmann/json.hpp>
 #include <span>
 #include <vector>
 
@@ -15,7 +16,7 @@
 
 namespace shearcell {
 
-/// Measures of one packing. A mean over zero grains is NaN.
+/// Measures of one packing, with their names in results. A mean over zero grains is NaN.
 struct PackingMeasures {
   std::size_t grains = 0;               ///< N
   std::size_t interior_grains = 0;      ///< N_inves: grains at least 1.5 d from the wall surfaces
@@ -24,10 +25,14 @@ struct PackingMeasures {
   double crystalline_percent = 0;       ///< FCC and HCP grains among interior grains [%]
   double fcc_percent = 0;               ///< FCC grains among interior grains [%]
   double hcp_percent = 0;               ///< HCP grains among interior grains [%]
-  double mean_overlap = 0;              ///< mean over touching pairs of grains, Eq. S3 [d]
+  double mean_overlap_d = 0;            ///< mean over touching pairs of grains, Eq. S3 [d]
   double contacts_per_grain = 0;        ///< mean number of contacts with grains and wall grains
   std::size_t crystallites = 0;         ///< number of crystallites of interior grains
   std::size_t largest_crystallite = 0;  ///< grains in the largest crystallite
+
+  NLOHMANN_DEFINE_TYPE_INTRUSIVE(PackingMeasures, grains, interior_grains, phi, phi_uncorrected,
+                                 crystalline_percent, fcc_percent, hcp_percent, mean_overlap_d,
+                                 contacts_per_grain, crystallites, largest_crystallite)
 };
 
 /// Arrays with one entry per grain, in the order of grain ids.

@@ -71,7 +71,7 @@ PROPERTY(Measures, DoNotDependOnThePeriodicSeam, 250) {
   RC_ASSERT(a.grains.crystallite == b.grains.crystallite);
   RC_ASSERT(near(a.measures.phi, b.measures.phi, 1e-10));
   RC_ASSERT(near(a.measures.phi_uncorrected, b.measures.phi_uncorrected, 1e-10));
-  RC_ASSERT(near(a.measures.mean_overlap, b.measures.mean_overlap, 1e-12));
+  RC_ASSERT(near(a.measures.mean_overlap_d, b.measures.mean_overlap_d, 1e-12));
   RC_ASSERT(a.measures.contacts_per_grain == b.measures.contacts_per_grain);
 }
 
