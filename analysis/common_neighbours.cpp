@@ -175,14 +175,10 @@ std::vector<Provider> lattice_providers() {
            .compute = compute},
           {.name = "grain_lattices",
            .parameters = nlohmann::json::object(),
-           .measures = {{.name = "lattice",
-                         .unit = "1",
-                         .meaning = "by common neighbours: 0 = none, 1 = FCC, 2 = HCP, 3 = BCC",
-                         .kind = MeasureKind::grains,
-                         .scale = {.classes = {"none", "FCC", "HCP", "BCC"},
-                                   .whole = true,
-                                   .of_wall_grains = -1},
-                         .words = "lattice by common neighbours"}},
+           .measures = {of_grains(
+               "lattice", "1", "by common neighbours: 0 = none, 1 = FCC, 2 = HCP, 3 = BCC",
+               "lattice by common neighbours",
+               {.classes = {"none", "FCC", "HCP", "BCC"}, .whole = true, .of_wall_grains = -1})},
            .compute = [](const MeasureInput& input) {
              return nlohmann::json{{"lattice", lattices_of(*input.checkpoint)}};
            }}};

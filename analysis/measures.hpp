@@ -66,14 +66,20 @@ struct Measure {
   std::string_view unit;  ///< "1" if it has no unit
   std::string meaning;
   MeasureKind kind = MeasureKind::number;
+  /// Name for use in sentences; if empty, `name` is used. Required for kinds `run` and `grains`.
+  std::string_view words = {};
   std::string_view x = {}, x_unit = {};  ///< x axis of a curve
   GrainScale scale = {};                 ///< used if `kind` is `grains`
   RunValue (*of_run)(const FrameRun& run) = nullptr;
-  /// Name for use in sentences; if empty, `name` is used. Required for kinds `run` and `grains`.
-  std::string_view words = {};
   std::string_view reach = {};  ///< the event that a run must reach to have a value
   bool waits = false;           ///< the value is the cycle of an event that may never occur
 };
+
+inline Measure of_grains(std::string name, std::string_view unit, std::string meaning,
+                         std::string_view words, GrainScale scale) {
+  return {std::move(name), unit, std::move(meaning), MeasureKind::grains, words, {}, {},
+          std::move(scale)};
+}
 
 /// Energies of all grains and the moving wall over one cycle [m d^2/s^2].
 struct CycleEnergies {

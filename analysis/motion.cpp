@@ -176,44 +176,39 @@ Provider motion_over(std::uint64_t cycles) {
 }  // namespace
 
 std::vector<Provider> motion_providers() {
-  return {{.name = "motion",
-           .parameters = with(crystal_criteria(), {{"neighbour_d", motion_neighbour_d},
-                                                   {"reversible_d", reversible_d}}),
-           .measures =
-               {{"msd_1_cycle_d2", "d^2",
-                 "mean squared displacement of interior grains over 1 cycle, in the frame of the "
-                 "walls"},
-                {"d2min_1_cycle_d2", "d^2",
-                 "mean non-affine squared displacement D^2_min of interior grains over 1 cycle"},
-                {"reversible_percent", "%",
-                 "interior grains at most 0.01 d from their position one cycle earlier"},
-                {"msd_inside_crystal_d2", "d^2",
-                 "mean squared displacement of crystalline grains inside a crystal, over 1 cycle"},
-                {"msd_crystal_boundary_d2", "d^2",
-                 "mean squared displacement of crystalline grains next to disordered grains, over "
-                 "1 cycle"},
-                {"msd_disordered_d2", "d^2",
-                 "mean squared displacement of disordered grains, over 1 cycle"}},
-           .compute = from_motion(one_cycle),
-           .cycles_back = 1},
-          motion_over(10),
-          motion_over(100),
-          {.name = "grain_motion",
-           .parameters = {{"neighbour_d", motion_neighbour_d}},
-           .measures = {{.name = "displacement_d",
-                         .unit = "d",
-                         .meaning = "displacement over the previous cycle",
-                         .kind = MeasureKind::grains,
-                         .scale = {.low = 1e-3, .high = 1, .logarithmic = true},
-                         .words = "displacement in a cycle"},
-                        {.name = "d2min_d2",
-                         .unit = "d^2",
-                         .meaning = "D^2_min of the motion over the previous cycle",
-                         .kind = MeasureKind::grains,
-                         .scale = {.low = 1e-6, .high = 1, .logarithmic = true},
-                         .words = "non-affine motion in a cycle"}},
-           .compute = from_motion(of_each_grain),
-           .cycles_back = 1}};
+  return {
+      {.name = "motion",
+       .parameters = with(crystal_criteria(),
+                          {{"neighbour_d", motion_neighbour_d}, {"reversible_d", reversible_d}}),
+       .measures =
+           {{"msd_1_cycle_d2", "d^2",
+             "mean squared displacement of interior grains over 1 cycle, in the frame of the "
+             "walls"},
+            {"d2min_1_cycle_d2", "d^2",
+             "mean non-affine squared displacement D^2_min of interior grains over 1 cycle"},
+            {"reversible_percent", "%",
+             "interior grains at most 0.01 d from their position one cycle earlier"},
+            {"msd_inside_crystal_d2", "d^2",
+             "mean squared displacement of crystalline grains inside a crystal, over 1 cycle"},
+            {"msd_crystal_boundary_d2", "d^2",
+             "mean squared displacement of crystalline grains next to disordered grains, over "
+             "1 cycle"},
+            {"msd_disordered_d2", "d^2",
+             "mean squared displacement of disordered grains, over 1 cycle"}},
+       .compute = from_motion(one_cycle),
+       .cycles_back = 1},
+      motion_over(10),
+      motion_over(100),
+      {.name = "grain_motion",
+       .parameters = {{"neighbour_d", motion_neighbour_d}},
+       .measures = {of_grains("displacement_d", "d", "displacement over the previous cycle",
+                              "displacement in a cycle",
+                              {.low = 1e-3, .high = 1, .logarithmic = true}),
+                    of_grains("d2min_d2", "d^2", "D^2_min of the motion over the previous cycle",
+                              "non-affine motion in a cycle",
+                              {.low = 1e-6, .high = 1, .logarithmic = true})},
+       .compute = from_motion(of_each_grain),
+       .cycles_back = 1}};
 }
 
 }  // namespace shearcell

@@ -102,8 +102,8 @@ std::vector<Provider> onset_providers() {
                    .unit = "1",
                    .meaning = meaning,
                    .kind = MeasureKind::run,
-                   .of_run = value,
                    .words = words,
+                   .of_run = value,
                    .reach = "the onset",
                    .waits = waits};
   };

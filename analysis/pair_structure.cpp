@@ -228,7 +228,7 @@ std::vector<Provider> pair_structure_providers() {
   return {
       {.name = "pair_correlation",
        .parameters = with(interior_criteria(), {{"bin_d", pair_bin_d}, {"reach_d", pair_reach_d}}),
-       .measures = {{"pair_correlation", "1", "g(r) of interior grains", MeasureKind::curve,
+       .measures = {{"pair_correlation", "1", "g(r) of interior grains", MeasureKind::curve, "",
                      "distance_d", "d"}},
        .compute =
            [](const MeasureInput& input) {
@@ -237,7 +237,7 @@ std::vector<Provider> pair_structure_providers() {
       {.name = "structure_factor",
        .parameters = with(interior_criteria(),
                           {{"bin_per_d", wave_bin_per_d}, {"largest_per_d", largest_wave_per_d}}),
-       .measures = {{"structure_factor", "1", "S(k) of interior grains", MeasureKind::curve,
+       .measures = {{"structure_factor", "1", "S(k) of interior grains", MeasureKind::curve, "",
                      "wave_number_per_d", "1/d"}},
        .compute = [](const MeasureInput& input) {
          return nlohmann::json{{"structure_factor", structure_factor(input)}};
