@@ -6,6 +6,7 @@
 #include <bit>
 #include <boost/pending/disjoint_sets.hpp>
 #include <cmath>
+#include <complex>
 #include <functional>
 #include <numbers>
 #include <utility>
@@ -21,42 +22,6 @@ namespace {
 constexpr std::array<double, 7> order_weight = {
     1.0 / 256,        2 * 42.0 / 256,    2 * 420.0 / 4096, 2 * 420.0 / 1024,
     2 * 126.0 / 1024, 2 * 2772.0 / 1024, 2 * 924.0 / 4096};
-
-/// Sums of weight * Y_6m(x, y, z) / C over the bonds. C is the coefficient of Y_6m: Y_6m / C is
-/// (x + iy)^m times a polynomial in z.
-struct HarmonicSums {
-  double order0 = 0;
-  std::array<double, 6> real{};
-  std::array<double, 6> imaginary{};
-
-  void add(double weight, double x, double y, double z) {
-    const double z2 = z * z;
-    const std::array<double, 6> polynomial = {z * ((33 * z2 - 30) * z2 + 5),
-                                              (33 * z2 - 18) * z2 + 1,
-                                              z * (11 * z2 - 3),
-                                              11 * z2 - 1,
-                                              z,
-                                              1};
-    order0 += weight * (((231 * z2 - 315) * z2 + 105) * z2 - 5);
-    double re = x;
-    double im = y;
-    for (std::size_t m = 0; m < 6; ++m) {
-      real[m] += weight * polynomial[m] * re;
-      imaginary[m] += weight * polynomial[m] * im;
-      const double next = re * x - im * y;
-      im = re * y + im * x;
-      re = next;
-    }
-  }
-
-  double norm() const {
-    double sum = order_weight[0] * order0 * order0;
-    for (std::size_t m = 0; m < 6; ++m) {
-      sum += order_weight[m + 1] * (real[m] * real[m] + imaginary[m] * imaginary[m]);
-    }
-    return std::sqrt(sum);
-  }
-};
 
 using nlohmann::json;
 
@@ -124,13 +89,30 @@ void read_map(const json& result, Measures& measures) {
 }  // namespace
 
 double bond_order_q6(std::span<const VoronoiFace> faces, double surface) {
-  HarmonicSums sums;
+  // Sums over the bonds of weight * Y_6m(x, y, z) / C. C is the coefficient of Y_6m: Y_6m / C is
+  // (x + iy)^m times a polynomial in z.
+  std::array<std::complex<double>, 7> sums{};
   for (const VoronoiFace& face : faces) {
     if (face.kind == NeighbourKind::wall_plane) continue;
     const Eigen::Vector3d bond = face.to_neighbour / face.to_neighbour.norm();
-    sums.add(face.area / surface, bond.x(), bond.y(), bond.z());
+    const double z = bond.z(), z2 = z * z;
+    const std::array<double, 7> polynomial = {((231 * z2 - 315) * z2 + 105) * z2 - 5,
+                                              z * ((33 * z2 - 30) * z2 + 5),
+                                              (33 * z2 - 18) * z2 + 1,
+                                              z * (11 * z2 - 3),
+                                              11 * z2 - 1,
+                                              z,
+                                              1};
+    const std::complex<double> in_plane(bond.x(), bond.y());
+    std::complex<double> power = 1;
+    for (std::size_t m = 0; m < sums.size(); ++m) {
+      sums[m] += face.area / surface * polynomial[m] * power;
+      power *= in_plane;
+    }
   }
-  return sums.norm();
+  double square = 0;
+  for (std::size_t m = 0; m < sums.size(); ++m) square += order_weight[m] * std::norm(sums[m]);
+  return std::sqrt(square);
 }
 
 Structure structure(double phi_local, double q6, double least_phi_local, double tolerance) {

@@ -24,14 +24,12 @@ constexpr double wave_bin_per_d = 0.25;    // width of the bins in |k| [1/d]
 constexpr double largest_wave_per_d = 25;  // largest |k| [1/d]
 
 Eigen::Matrix3Xd interior_sites(const MeasureInput& input) {
-  const Eigen::Matrix3Xd& grains = input.checkpoint->state.position;
   const std::vector<std::uint8_t>& interior = input.analysis->grains.interior;
-  Eigen::Matrix3Xd found(3, std::count(interior.begin(), interior.end(), std::uint8_t{1}));
-  Eigen::Index next = 0;
-  for (Eigen::Index i = 0; i < grains.cols(); ++i) {
-    if (interior[static_cast<std::size_t>(i)] != 0) found.col(next++) = grains.col(i);
+  std::vector<std::size_t> sites;
+  for (std::size_t i = 0; i < interior.size(); ++i) {
+    if (interior[i] != 0) sites.push_back(i);
   }
-  return found;
+  return input.checkpoint->state.position(Eigen::all, sites);
 }
 
 // Volume of the set of pairs (r, r + s) for which r and r + s are in the region and |s| is in the
