@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "analysis/analyse.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <numeric>
-#include <string>
 #include <utility>
 
 #include "analysis/error.hpp"
@@ -12,24 +13,6 @@
 #include "analysis/voronoi.hpp"
 
 namespace shearcell {
-namespace {
-
-void find_crystallites(const VoronoiDiagram& diagram, Analysis& analysis) {
-  GrainMeasures& grains = analysis.grains;
-  grains.crystallites = crystallites_of(grains, diagram, connecting_face);
-  const auto percent = [&](auto... wanted) {
-    return percent_of_interior(
-        grains, [&](std::size_t i) { return ((grains.structure[i] == wanted) || ...); });
-  };
-  PackingMeasures& all = analysis.measures;
-  all.fcc_percent = percent(Structure::fcc);
-  all.hcp_percent = percent(Structure::hcp);
-  all.crystalline_percent = percent(Structure::fcc, Structure::hcp);
-  all.crystallites = grains.crystallites.size.size();
-  all.largest_crystallite = static_cast<std::size_t>(grains.crystallites.largest);
-}
-
-}  // namespace
 
 Analysis analyse(const Checkpoint& checkpoint) {
   const Cell& cell = checkpoint.cell;
@@ -37,12 +20,10 @@ Analysis analyse(const Checkpoint& checkpoint) {
   const Eigen::Matrix3Xd& positions = checkpoint.state.position;
   // In a cell less than 1 d deep a grain would overlap its own periodic image.
   if (!(cell.depth >= 1)) {
-    throw AnalysisError("the cell is " + std::to_string(cell.depth) + " d deep; minimum: 1 d");
+    throw AnalysisError(fmt::format("the cell is {:f} d deep; minimum: 1 d", cell.depth));
   }
   Analysis analysis;
-  PackingMeasures& all = analysis.measures;
   GrainMeasures& grains = analysis.grains;
-
   VoronoiDiagram diagram = voronoi(cell, pose, positions);
   grains.cell_volume = std::move(diagram.volume);
   grains.cell_surface = std::move(diagram.surface);
@@ -50,106 +31,86 @@ Analysis analyse(const Checkpoint& checkpoint) {
   grains.largest_overlap = std::move(contact.largest);
   grains.contacts = std::move(contact.contacts);
   grains.interior = interior_grains(cell, pose, positions);
-
-  all.grains = grains.cell_volume.size();
-  all.interior_grains = static_cast<std::size_t>(
-      std::count(grains.interior.begin(), grains.interior.end(), std::uint8_t{1}));
-  const PackingFractions fractions =
-      packing_fractions(grains.largest_overlap, grains.cell_volume, grains.interior);
-  all.phi = fractions.phi;
-  all.phi_uncorrected = fractions.phi_uncorrected;
-  all.mean_overlap = contact.mean;
-  const auto contacts =
-      std::accumulate(grains.contacts.begin(), grains.contacts.end(), std::int64_t{0});
-  all.contacts_per_grain = static_cast<double>(contacts) / static_cast<double>(all.grains);
-
-  for (std::size_t i = 0; i < all.grains; ++i) {
+  const std::size_t count = grains.cell_volume.size();
+  for (std::size_t i = 0; i < count; ++i) {
     grains.phi_local.push_back(
         local_packing_fraction(grains.largest_overlap[i], grains.cell_volume[i]));
     grains.q6.push_back(bond_order_q6(diagram.faces_of(i), grains.cell_surface[i]));
     grains.structure.push_back(structure(grains.phi_local[i], grains.q6[i]));
   }
-  find_crystallites(diagram, analysis);
-  analysis.crystallites = crystallite_map(grains.crystallites, cell, pose, positions);
+  grains.crystallite = crystallites_of(grains, diagram, connecting_face);
+  analysis.crystallites = crystallite_map(grains.crystallite, cell, pose, positions);
   analysis.mechanics = mechanics(checkpoint, grains.cell_volume, grains.interior);
+
+  const auto percent = [&](auto... wanted) {
+    return percent_of(grains.interior,
+                      [&](std::size_t i) { return ((grains.structure[i] == wanted) || ...); });
+  };
+  const PackingFractions fractions =
+      packing_fractions(grains.largest_overlap, grains.cell_volume, grains.interior);
+  const auto contacts =
+      std::accumulate(grains.contacts.begin(), grains.contacts.end(), std::int64_t{0});
+  analysis.measures = {
+      .grains = count,
+      .interior_grains = static_cast<std::size_t>(std::ranges::count(grains.interior, 1)),
+      .phi = fractions.phi,
+      .phi_uncorrected = fractions.phi_uncorrected,
+      .crystalline_percent = percent(Structure::fcc, Structure::hcp),
+      .fcc_percent = percent(Structure::fcc),
+      .hcp_percent = percent(Structure::hcp),
+      .mean_overlap_d = contact.mean,
+      .contacts_per_grain = static_cast<double>(contacts) / static_cast<double>(count),
+      .crystallites = analysis.crystallites.size.size(),
+      .largest_crystallite = static_cast<std::size_t>(analysis.crystallites.largest())};
   return analysis;
 }
 
-Crystallites crystallites_of(const GrainMeasures& grains, const VoronoiDiagram& diagram,
-                             double least_share) {
+std::vector<std::int32_t> crystallites_of(const GrainMeasures& grains,
+                                          const VoronoiDiagram& diagram, double least_share) {
   std::vector<std::uint8_t> crystalline(grains.interior);
   for (std::size_t i = 0; i < crystalline.size(); ++i) {
     if (grains.structure[i] == Structure::disordered) crystalline[i] = 0;
   }
   const auto surface = [&](std::size_t i) { return grains.cell_surface[i]; };
-  return crystallites(diagram, crystalline, least_share * interior_mean(grains, surface));
+  return crystallites(diagram, crystalline, least_share * mean_over(grains.interior, surface));
 }
 
 std::vector<Provider> packing_providers() {
   using enum MeasureKind;
-  const auto scalars_of = [](const MeasureInput& input) -> nlohmann::json {
-    const PackingMeasures& m = input.analysis->measures;
-    return {{"grains", m.grains},  // N is not a measure, because it is a parameter of the run
-            {"interior_grains", m.interior_grains},
-            {"phi", m.phi},
-            {"phi_uncorrected", m.phi_uncorrected},
-            {"crystalline_percent", m.crystalline_percent},
-            {"fcc_percent", m.fcc_percent},
-            {"hcp_percent", m.hcp_percent},
-            {"mean_overlap_d", m.mean_overlap},
-            {"contacts_per_grain", m.contacts_per_grain},
-            {"crystallites", m.crystallites},
-            {"largest_crystallite", m.largest_crystallite}};
-  };
   const auto grains_of = [](const MeasureInput& input) -> nlohmann::json {
     const GrainMeasures& grains = input.analysis->grains;
     std::vector<double> pressure = input.analysis->mechanics.grain_pressure;
     const double unit_Pa = mechanical_units(input).stress_Pa;
     for (double& one : pressure) one *= unit_Pa;
-    std::vector<std::int32_t> crystallite = grains.crystallites.label;
+    std::vector<std::int32_t> crystallite = grains.crystallite;
     for (std::int32_t& label : crystallite) ++label;
     return {{"phi_local", grains.phi_local},     {"q6", grains.q6},
             {"overlap", grains.largest_overlap}, {"grain_pressure_Pa", pressure},
             {"contacts", grains.contacts},       {"structure", grains.structure},
             {"crystallite", crystallite}};
   };
-  const auto of_grains = [](const char* name, const char* unit, const char* meaning,
-                            const char* words, GrainScale scale) {
-    return Measure{.name = name,
-                   .unit = unit,
-                   .meaning = meaning,
-                   .kind = MeasureKind::grains,
-                   .scale = std::move(scale),
-                   .words = words};
-  };
   return {
       {.name = scalars_provider,
        .parameters = crystal_criteria(),
-       .measures = {{.name = "interior_grains",
-                     .unit = "1",
-                     .meaning = "N_inves, grains at least 1.5 d from the wall surfaces",
-                     .kind = count,
-                     .words = "N_inves"},
+       .measures = {{"interior_grains", "1",
+                     "N_inves, grains at least 1.5 d from the wall surfaces", count, "N_inves"},
                     {"phi", "1", "volume fraction of interior grains (Eq. S4)"},
                     {"phi_uncorrected", "1",
                      "phi_u, volume fraction without correction for overlaps (Eq. S2)"},
-                    {.name = "crystalline_percent",
-                     .unit = "%",
-                     .meaning = "crystalline (FCC or HCP) grains among interior grains",
-                     .words = "percentage crystalline"},
+                    {"crystalline_percent", "%",
+                     "crystalline (FCC or HCP) grains among interior grains", number,
+                     "percentage crystalline"},
                     {"fcc_percent", "%", "FCC grains among interior grains"},
                     {"hcp_percent", "%", "HCP grains among interior grains"},
-                    {.name = "mean_overlap_d",
-                     .unit = "d",
-                     .meaning = "mean overlap of touching grains (Eq. S3)",
-                     .words = "mean overlap"},
-                    {.name = "contacts_per_grain",
-                     .unit = "1",
-                     .meaning = "contacts with grains and wall grains, mean over all grains",
-                     .words = "contacts per grain"},
+                    {"mean_overlap_d", "d", "mean overlap of touching grains (Eq. S3)", number,
+                     "mean overlap"},
+                    {"contacts_per_grain", "1",
+                     "contacts with grains and wall grains, mean over all grains", number,
+                     "contacts per grain"},
                     {"crystallites", "1", "number of crystallites of interior grains", count},
                     {"largest_crystallite", "1", "grains in the largest crystallite", count}},
-       .compute = scalars_of,
+       .compute =
+           [](const MeasureInput& input) { return nlohmann::json(input.analysis->measures); },
        .read_more =
            [](const nlohmann::json&, Measures& measures) {
              const double phi = measures.number("phi");

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <nlohmann/json.hpp>
+#include <span>
 #include <vector>
 
 #include "analysis/crystal.hpp"
@@ -14,7 +16,7 @@
 
 namespace shearcell {
 
-/// Measures of one packing. A mean over zero grains is NaN.
+/// Measures of one packing, with their names in results. A mean over zero grains is NaN.
 struct PackingMeasures {
   std::size_t grains = 0;               ///< N
   std::size_t interior_grains = 0;      ///< N_inves: grains at least 1.5 d from the wall surfaces
@@ -23,10 +25,14 @@ struct PackingMeasures {
   double crystalline_percent = 0;       ///< FCC and HCP grains among interior grains [%]
   double fcc_percent = 0;               ///< FCC grains among interior grains [%]
   double hcp_percent = 0;               ///< HCP grains among interior grains [%]
-  double mean_overlap = 0;              ///< mean over touching pairs of grains, Eq. S3 [d]
+  double mean_overlap_d = 0;            ///< mean over touching pairs of grains, Eq. S3 [d]
   double contacts_per_grain = 0;        ///< mean number of contacts with grains and wall grains
   std::size_t crystallites = 0;         ///< number of crystallites of interior grains
   std::size_t largest_crystallite = 0;  ///< grains in the largest crystallite
+
+  NLOHMANN_DEFINE_TYPE_INTRUSIVE(PackingMeasures, grains, interior_grains, phi, phi_uncorrected,
+                                 crystalline_percent, fcc_percent, hcp_percent, mean_overlap_d,
+                                 contacts_per_grain, crystallites, largest_crystallite)
 };
 
 /// Arrays with one entry per grain, in the order of grain ids.
@@ -37,9 +43,9 @@ struct GrainMeasures {
   std::vector<std::int32_t> contacts;   ///< contacts with grains and wall grains
   std::vector<double> phi_local;
   std::vector<double> q6;
-  std::vector<Structure> structure;    ///< also set for grains near the walls
-  std::vector<std::uint8_t> interior;  ///< 1 for interior grains, else 0
-  Crystallites crystallites;           ///< of crystalline interior grains
+  std::vector<Structure> structure;       ///< also set for grains near the walls
+  std::vector<std::uint8_t> interior;     ///< 1 for interior grains, else 0
+  std::vector<std::int32_t> crystallite;  ///< crystallites() of crystalline interior grains
 };
 
 struct Analysis {
@@ -53,12 +59,12 @@ struct Analysis {
 /// it, or if the cell is less than 1 d deep.
 Analysis analyse(const Checkpoint& checkpoint);
 
-/// Mean of value_of(i) over interior grains i with a finite value; NaN if no grain has one.
-template <class Value>
-double interior_mean(const GrainMeasures& grains, const Value& value_of) {
+/// Mean of value_of(i) over the grains i with selected[i] != 0 and a finite value; NaN if no grain
+/// has one.
+double mean_over(std::span<const std::uint8_t> selected, const auto& value_of) {
   double sum = 0, count = 0;
-  for (std::size_t i = 0; i < grains.interior.size(); ++i) {
-    const double value = grains.interior[i] != 0 ? value_of(i) : std::nan("");
+  for (std::size_t i = 0; i < selected.size(); ++i) {
+    const double value = selected[i] != 0 ? value_of(i) : std::nan("");
     if (!std::isfinite(value)) continue;
     sum += value;
     ++count;
@@ -66,15 +72,14 @@ double interior_mean(const GrainMeasures& grains, const Value& value_of) {
   return sum / count;
 }
 
-/// Percentage of interior grains i for which holds(i) is true; NaN without interior grains.
-template <class Predicate>
-double percent_of_interior(const GrainMeasures& grains, const Predicate& holds) {
-  return interior_mean(grains, [&](std::size_t i) { return holds(i) ? 100 : 0; });
+/// Percentage of the selected grains i for which holds(i) is true; NaN without selected grains.
+double percent_of(std::span<const std::uint8_t> selected, const auto& holds) {
+  return mean_over(selected, [&](std::size_t i) { return holds(i) ? 100 : 0; });
 }
 
-/// Finds the crystallites among the crystalline interior grains. A Voronoi face connects two grains
-/// if its area is at least `least_share` times the mean cell surface of interior grains.
-Crystallites crystallites_of(const GrainMeasures& grains, const VoronoiDiagram& diagram,
-                             double least_share);
+/// crystallites() of the crystalline interior grains. A Voronoi face connects two grains if its
+/// area is at least `least_share` times the mean cell surface of interior grains.
+std::vector<std::int32_t> crystallites_of(const GrainMeasures& grains,
+                                          const VoronoiDiagram& diagram, double least_share);
 
 }  // namespace shearcell

@@ -46,7 +46,7 @@ struct Followed {
 Followed followed(std::span<const CrystalliteMap* const> maps, std::int32_t label);
 
 /// Outcome for a followed crystallite. `undecided`: the clone ends before the outcome is known.
-enum class Fate { undecided, grown, gone, merged };
+enum class Fate { grown, gone, merged, undecided };
 
 struct Ending {
   Fate fate = Fate::undecided;

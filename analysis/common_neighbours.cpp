@@ -67,8 +67,8 @@ Bonds find_bonds(std::span<const Neighbour> near, double cut) {
 // Number of bonds between the neighbours in the bit set `members`.
 int bonds_among(const Bonds& bonds, std::uint32_t members) {
   int ends = 0;
-  for (std::uint32_t rest = members; rest != 0; rest &= rest - 1) {
-    ends += std::popcount(bonds[static_cast<std::size_t>(std::countr_zero(rest))] & members);
+  for (std::size_t a = 0; a < kMost; ++a) {
+    if ((members >> a & 1U) != 0) ends += std::popcount(bonds[a] & members);
   }
   return ends / 2;
 }
@@ -76,16 +76,16 @@ int bonds_among(const Bonds& bonds, std::uint32_t members) {
 // Number of bonds in the largest connected group of neighbours in `members`.
 int longest_chain(const Bonds& bonds, std::uint32_t members) {
   int longest = 0;
-  for (std::uint32_t left = members; left != 0;) {
-    std::uint32_t part = left & (~left + 1), grown = 0;
+  while (members != 0) {
+    std::uint32_t part = members & (~members + 1), grown = 0;
     while (part != grown) {
       grown = part;
-      for (std::uint32_t rest = grown; rest != 0; rest &= rest - 1) {
-        part |= bonds[static_cast<std::size_t>(std::countr_zero(rest))] & members;
+      for (std::size_t a = 0; a < kMost; ++a) {
+        if ((grown >> a & 1U) != 0) part |= bonds[a] & members;
       }
     }
     longest = std::max(longest, bonds_among(bonds, part));
-    left &= ~part;
+    members &= ~part;
   }
   return longest;
 }
@@ -112,37 +112,32 @@ std::array<int, 2> count_signatures(std::span<const Neighbour> near, double cut,
   return counts;
 }
 
-Lattice close_packed(std::span<const Neighbour> near) {
-  double mean = 0;
-  for (const Neighbour& neighbour : near) mean += neighbour.distance / 12;
-  const auto [cubic, hexagonal] = count_signatures(near, kCut * mean, 421, 422);
+// The lattice of a grain with these neighbours. FCC and HCP are recognized by the 12 nearest
+// neighbours, BCC by 14. The longest bond between neighbours is kCut times a length: the mean
+// distance of the 12 neighbours or, for BCC, the side of the cubic cell, from 8 first and 6 second
+// neighbours.
+Lattice lattice_of(std::span<const Neighbour> near) {
+  if (near.size() < 12) return Lattice::none;
+  double mean = 0, side = 0;
+  for (const Neighbour& neighbour : near.first(12)) mean += neighbour.distance / 12;
+  const auto [cubic, hexagonal] = count_signatures(near.first(12), kCut * mean, 421, 422);
   if (cubic == 12) return Lattice::fcc;
-  return cubic == 6 && hexagonal == 6 ? Lattice::hcp : Lattice::none;
-}
-
-Lattice body_centred(std::span<const Neighbour> near) {
-  double side = 0;  // mean side of the cubic cell, from 8 first and 6 second neighbours
-  for (std::size_t a = 0; a < near.size(); ++a) {
+  if (cubic == 6 && hexagonal == 6) return Lattice::hcp;
+  if (near.size() < kMost) return Lattice::none;
+  for (std::size_t a = 0; a < kMost; ++a) {
     side += near[a].distance * (a < 8 ? 2 / std::numbers::sqrt3 : 1) / 14;
   }
-  const auto [first_shell, second_shell] = count_signatures(near, kCut * side, 666, 444);
-  return first_shell == 8 && second_shell == 6 ? Lattice::bcc : Lattice::none;
+  const auto [first, second] = count_signatures(near.first(kMost), kCut * side, 666, 444);
+  return first == 8 && second == 6 ? Lattice::bcc : Lattice::none;
 }
 
 /// Adaptive common neighbour analysis of each grain (Stukowski, Modelling Simul. Mater. Sci. Eng.
-/// 20, 045021 (2012)). Wall grains are neighbours too. FCC and HCP are recognized by the 12 nearest
-/// neighbours, BCC by 14. The longest bond between neighbours is (1 + sqrt 2) / 2 times a length:
-/// the mean distance of the 12 neighbours or, for BCC, the side of the cubic cell. A grain with
-/// fewer neighbours within 1.5 d has no lattice.
+/// 20, 045021 (2012)). Wall grains are neighbours too. A grain with fewer than 12 neighbours within
+/// 1.5 d has no lattice.
 std::vector<Lattice> lattices_of(const Checkpoint& c) {
   std::vector<Lattice> lattices;
-  for (const std::vector<Neighbour>& of_grain :
-       neighbours_of_all(c.cell, pose_of(c), c.state.position)) {
-    const std::span near(of_grain);
-    Lattice lattice = Lattice::none;
-    if (near.size() >= 12) lattice = close_packed(near.first(12));
-    if (lattice == Lattice::none && near.size() >= kMost) lattice = body_centred(near.first(kMost));
-    lattices.push_back(lattice);
+  for (const auto& near : neighbours_of_all(c.cell, pose_of(c), c.state.position)) {
+    lattices.push_back(lattice_of(near));
   }
   return lattices;
 }
@@ -153,8 +148,8 @@ std::vector<Provider> lattice_providers() {
   const auto compute = [](const MeasureInput& input) -> nlohmann::json {
     const std::vector<Lattice> lattice = lattices_of(*input.checkpoint);
     const auto percent = [&](Lattice wanted) {
-      return percent_of_interior(input.analysis->grains,
-                                 [&](std::size_t i) { return lattice[i] == wanted; });
+      return percent_of(input.analysis->grains.interior,
+                        [&](std::size_t i) { return lattice[i] == wanted; });
     };
     const double fcc = percent(Lattice::fcc), hcp = percent(Lattice::hcp);
     return {{"cna_crystalline_percent", fcc + hcp},
@@ -175,14 +170,10 @@ std::vector<Provider> lattice_providers() {
            .compute = compute},
           {.name = "grain_lattices",
            .parameters = nlohmann::json::object(),
-           .measures = {{.name = "lattice",
-                         .unit = "1",
-                         .meaning = "by common neighbours: 0 = none, 1 = FCC, 2 = HCP, 3 = BCC",
-                         .kind = MeasureKind::grains,
-                         .scale = {.classes = {"none", "FCC", "HCP", "BCC"},
-                                   .whole = true,
-                                   .of_wall_grains = -1},
-                         .words = "lattice by common neighbours"}},
+           .measures = {of_grains(
+               "lattice", "1", "by common neighbours: 0 = none, 1 = FCC, 2 = HCP, 3 = BCC",
+               "lattice by common neighbours",
+               {.classes = {"none", "FCC", "HCP", "BCC"}, .whole = true, .of_wall_grains = -1})},
            .compute = [](const MeasureInput& input) {
              return nlohmann::json{{"lattice", lattices_of(*input.checkpoint)}};
            }}};

@@ -6,8 +6,9 @@
 #include <bit>
 #include <boost/pending/disjoint_sets.hpp>
 #include <cmath>
+#include <complex>
+#include <functional>
 #include <numbers>
-#include <string>
 #include <utility>
 
 #include "analysis/error.hpp"
@@ -22,42 +23,6 @@ constexpr std::array<double, 7> order_weight = {
     1.0 / 256,        2 * 42.0 / 256,    2 * 420.0 / 4096, 2 * 420.0 / 1024,
     2 * 126.0 / 1024, 2 * 2772.0 / 1024, 2 * 924.0 / 4096};
 
-/// Sums of weight * Y_6m(x, y, z) / C over the bonds. C is the coefficient of Y_6m: Y_6m / C is
-/// (x + iy)^m times a polynomial in z.
-struct HarmonicSums {
-  double order0 = 0;
-  std::array<double, 6> real{};
-  std::array<double, 6> imaginary{};
-
-  void add(double weight, double x, double y, double z) {
-    const double z2 = z * z;
-    const std::array<double, 6> polynomial = {z * ((33 * z2 - 30) * z2 + 5),
-                                              (33 * z2 - 18) * z2 + 1,
-                                              z * (11 * z2 - 3),
-                                              11 * z2 - 1,
-                                              z,
-                                              1};
-    order0 += weight * (((231 * z2 - 315) * z2 + 105) * z2 - 5);
-    double re = x;
-    double im = y;
-    for (std::size_t m = 0; m < 6; ++m) {
-      real[m] += weight * polynomial[m] * re;
-      imaginary[m] += weight * polynomial[m] * im;
-      const double next = re * x - im * y;
-      im = re * y + im * x;
-      re = next;
-    }
-  }
-
-  double norm() const {
-    double sum = order_weight[0] * order0 * order0;
-    for (std::size_t m = 0; m < 6; ++m) {
-      sum += order_weight[m + 1] * (real[m] * real[m] + imaginary[m] * imaginary[m]);
-    }
-    return std::sqrt(sum);
-  }
-};
-
 using nlohmann::json;
 
 static_assert(std::endian::native == std::endian::little, "stored maps are little-endian");
@@ -67,37 +32,28 @@ json packed(const std::vector<std::int32_t>& values) {
   return json::binary(std::vector(bytes, bytes + 4 * values.size()));
 }
 
-[[noreturn]] void refuse(const std::string& why) {
-  throw AnalysisError("the stored map of crystallites is invalid: " + why);
-}
-
 std::vector<std::int32_t> unpacked(const json& result, const char* key) {
   const auto& bytes = result.at(key).get_binary();
-  if (bytes.size() % 4 != 0) refuse(std::string(key) + " ends in the middle of a number");
   std::vector<std::int32_t> values(bytes.size() / 4);
-  std::ranges::copy(bytes, reinterpret_cast<std::uint8_t*>(values.data()));
+  std::copy_n(bytes.begin(), 4 * values.size(), reinterpret_cast<std::uint8_t*>(values.data()));
   return values;
 }
 
-/// Throws AnalysisError unless grain ids ascend, each label belongs to a crystallite, each size
-/// is the number of grains with this label and is not 0, and centres and the cell are finite.
-void check(const CrystalliteMap& map) {
-  if (map.label.size() != map.grain.size()) refuse("it needs one label for each grain");
-  if (map.centre.size() != map.size.size()) refuse("it needs one centre for each size");
+/// Whether grain ids ascend, each label belongs to a crystallite, each size is the number of grains
+/// with this label and is not 0, and centres and the cell are finite.
+bool is_valid(const CrystalliteMap& map) {
+  if (map.label.size() != map.grain.size() || map.centre.size() != map.size.size()) return false;
+  if (!map.grain.empty() && map.grain.front() < 0) return false;
+  if (std::ranges::adjacent_find(map.grain, std::greater_equal()) != map.grain.end()) return false;
   std::vector<std::int32_t> count(map.size.size());
-  for (std::size_t k = 0; k < map.grain.size(); ++k) {
-    const std::int32_t before = k == 0 ? -1 : map.grain[k - 1];
-    if (map.grain[k] <= before) refuse("grain ids do not ascend");
-    const auto label = static_cast<std::size_t>(map.label[k]);
-    if (map.label[k] < 0 || label >= count.size()) refuse("a label has no crystallite");
-    ++count[label];
+  for (const std::int32_t label : map.label) {
+    if (label < 0 || static_cast<std::size_t>(label) >= count.size()) return false;
+    ++count[static_cast<std::size_t>(label)];
   }
-  if (count != map.size) refuse("a size is not the number of grains with its label");
-  if (std::ranges::count(count, 0) > 0) refuse("a crystallite has no grains");
-  const bool finite =
-      std::ranges::all_of(map.centre, [](const auto& c) { return c.allFinite(); }) &&
-      std::isfinite(map.width) && std::isfinite(map.top - map.bottom);
-  if (!(finite && map.width > 0 && map.top > map.bottom)) refuse("a centre or the cell is invalid");
+  return count == map.size && std::ranges::count(count, 0) == 0 &&
+         std::ranges::all_of(map.centre, [](const auto& c) { return c.allFinite(); }) &&
+         std::isfinite(map.width) && map.width > 0 && std::isfinite(map.top - map.bottom) &&
+         map.top > map.bottom;
 }
 
 /// Writes arrays of integers as little-endian bytes and real numbers as JSON numbers.
@@ -114,7 +70,7 @@ json packed_map(const MeasureInput& input) {
           {"top_d", map.top}};
 }
 
-/// Reads the result of packed_map(). Throws AnalysisError if the arrays do not match.
+/// Reads the result of packed_map(). Throws AnalysisError unless the map is_valid().
 void read_map(const json& result, Measures& measures) {
   CrystalliteMap map;
   map.grain = unpacked(result, "grain");
@@ -126,20 +82,37 @@ void read_map(const json& result, Measures& measures) {
   result.at("width_d").get_to(map.width);
   result.at("bottom_d").get_to(map.bottom);
   result.at("top_d").get_to(map.top);
-  check(map);
+  if (!is_valid(map)) throw AnalysisError("the stored map of crystallites is invalid");
   measures.crystallite_map = std::move(map);
 }
 
 }  // namespace
 
 double bond_order_q6(std::span<const VoronoiFace> faces, double surface) {
-  HarmonicSums sums;
+  // Sums over the bonds of weight * Y_6m(x, y, z) / C. C is the coefficient of Y_6m: Y_6m / C is
+  // (x + iy)^m times a polynomial in z.
+  std::array<std::complex<double>, 7> sums{};
   for (const VoronoiFace& face : faces) {
     if (face.kind == NeighbourKind::wall_plane) continue;
     const Eigen::Vector3d bond = face.to_neighbour / face.to_neighbour.norm();
-    sums.add(face.area / surface, bond.x(), bond.y(), bond.z());
+    const double z = bond.z(), z2 = z * z;
+    const std::array<double, 7> polynomial = {((231 * z2 - 315) * z2 + 105) * z2 - 5,
+                                              z * ((33 * z2 - 30) * z2 + 5),
+                                              (33 * z2 - 18) * z2 + 1,
+                                              z * (11 * z2 - 3),
+                                              11 * z2 - 1,
+                                              z,
+                                              1};
+    const std::complex<double> in_plane(bond.x(), bond.y());
+    std::complex<double> power = 1;
+    for (std::size_t m = 0; m < sums.size(); ++m) {
+      sums[m] += face.area / surface * polynomial[m] * power;
+      power *= in_plane;
+    }
   }
-  return sums.norm();
+  double square = 0;
+  for (std::size_t m = 0; m < sums.size(); ++m) square += order_weight[m] * std::norm(sums[m]);
+  return std::sqrt(square);
 }
 
 Structure structure(double phi_local, double q6, double least_phi_local, double tolerance) {
@@ -149,8 +122,9 @@ Structure structure(double phi_local, double q6, double least_phi_local, double 
   return Structure::disordered;
 }
 
-Crystallites crystallites(const VoronoiDiagram& diagram, std::span<const std::uint8_t> crystalline,
-                          double least_face) {
+std::vector<std::int32_t> crystallites(const VoronoiDiagram& diagram,
+                                       std::span<const std::uint8_t> crystalline,
+                                       double least_face) {
   const std::size_t count = crystalline.size();
   boost::disjoint_sets_with_storage<> sets(count);
   for (std::size_t i = 0; i < count; ++i) {
@@ -161,46 +135,43 @@ Crystallites crystallites(const VoronoiDiagram& diagram, std::span<const std::ui
       if (crystalline[j] != 0) sets.union_set(i, j);
     }
   }
-  Crystallites result;
-  result.label.assign(count, -1);
+  std::int32_t found = 0;
+  std::vector<std::int32_t> labels(count, -1);
   std::vector<std::int32_t> label_of(count, -1);  // label of a set, stored at its representative
   for (std::size_t i = 0; i < count; ++i) {
     if (crystalline[i] == 0) continue;
     std::int32_t& label = label_of[sets.find_set(i)];
-    if (label < 0) {
-      label = static_cast<std::int32_t>(result.size.size());
-      result.size.push_back(0);
-    }
-    result.label[i] = label;
-    std::int32_t& size = ++result.size[static_cast<std::size_t>(result.label[i])];
-    result.largest = std::max(result.largest, size);
+    if (label < 0) label = found++;
+    labels[i] = label;
   }
-  return result;
+  return labels;
 }
 
-CrystalliteMap crystallite_map(const Crystallites& crystallites, const Cell& cell,
+CrystalliteMap crystallite_map(std::span<const std::int32_t> crystallite, const Cell& cell,
                                const WallPose& pose, const Eigen::Matrix3Xd& positions) {
-  CrystalliteMap map;
-  map.size = crystallites.size;
-  map.width = cell.width;
-  map.bottom = pose.bottom;
-  map.top = pose.top;
-  const std::size_t count = map.size.size();
-  std::vector<Eigen::Vector2d> sum(count, Eigen::Vector2d::Zero());
-  std::vector<Eigen::Vector2d> phase(count, Eigen::Vector2d::Zero());
+  CrystalliteMap map{.width = cell.width, .bottom = pose.bottom, .top = pose.top};
+  struct Sums {
+    Eigen::Vector2d place = {0, 0}, phase = {0, 0};
+  };
+  std::vector<Sums> sums;
   const double turn = 2 * std::numbers::pi / cell.depth;
-  for (std::size_t i = 0; i < crystallites.label.size(); ++i) {
-    if (crystallites.label[i] < 0) continue;
-    const auto label = static_cast<std::size_t>(crystallites.label[i]);
-    const Eigen::Vector3d r = positions.col(static_cast<Eigen::Index>(i));
+  for (std::size_t i = 0; i < crystallite.size(); ++i) {
+    if (crystallite[i] < 0) continue;
+    const auto label = static_cast<std::size_t>(crystallite[i]);
     map.grain.push_back(static_cast<std::int32_t>(i));
-    map.label.push_back(crystallites.label[i]);
-    sum[label] += Eigen::Vector2d(r.x() - (r.y() - pose.top) * pose.tan_theta, r.y());
-    phase[label] += Eigen::Vector2d(std::cos(turn * r.z()), std::sin(turn * r.z()));
+    map.label.push_back(crystallite[i]);
+    if (label == sums.size()) {
+      sums.emplace_back();
+      map.size.push_back(0);
+    }
+    ++map.size[label];
+    const Eigen::Vector3d r = positions.col(static_cast<Eigen::Index>(i));
+    sums[label].place += Eigen::Vector2d(r.x() - (r.y() - pose.top) * pose.tan_theta, r.y());
+    sums[label].phase += Eigen::Vector2d(std::cos(turn * r.z()), std::sin(turn * r.z()));
   }
-  for (std::size_t c = 0; c < count; ++c) {
-    const Eigen::Vector2d mean = sum[c] / map.size[c];
-    const double z = std::atan2(phase[c].y(), phase[c].x()) / turn;
+  for (std::size_t c = 0; c < sums.size(); ++c) {
+    const Eigen::Vector2d mean = sums[c].place / map.size[c];
+    const double z = std::atan2(sums[c].phase.y(), sums[c].phase.x()) / turn;
     map.centre.emplace_back(mean.x(), mean.y(), z < 0 ? z + cell.depth : z);
   }
   return map;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -33,34 +34,35 @@ enum class Structure : std::uint8_t { disordered, fcc, hcp };
 Structure structure(double phi_local, double q6, double least_phi_local = crystalline_phi_local,
                     double tolerance = q6_tolerance);
 
-struct Crystallites {
-  /// Number of each grain's crystallite, -1 for none. Crystallites are ordered by lowest grain id.
-  std::vector<std::int32_t> label;
-  std::vector<std::int32_t> size;  ///< grains in each crystallite
-  std::int32_t largest = 0;        ///< grains in the largest crystallite; 0 if there is none
-};
-
 /// Finds the connected sets of grains with crystalline[i] != 0. Two such grains are connected if
 /// they share a Voronoi face of at least `least_face` [d^2]. A single grain can be a crystallite.
-Crystallites crystallites(const VoronoiDiagram& diagram, std::span<const std::uint8_t> crystalline,
-                          double least_face);
+/// Returns the number of each grain's crystallite, -1 for none. Crystallites are ordered by lowest
+/// grain id.
+std::vector<std::int32_t> crystallites(const VoronoiDiagram& diagram,
+                                       std::span<const std::uint8_t> crystalline,
+                                       double least_face);
 
 /// The crystallites of one checkpoint, with their centres and grains. Measures contain this map, so
 /// that crystallites can be followed from checkpoint to checkpoint.
 struct CrystalliteMap {
-  std::vector<std::int32_t> grain;      ///< ids of the crystalline interior grains, ascending
-  std::vector<std::int32_t> label;      ///< number of the crystallite of each entry of `grain`
-  std::vector<std::int32_t> size;       ///< grains in each crystallite
-  std::vector<Eigen::Vector3d> centre;  ///< centre of mass of each crystallite [d]
-  double width = 0;                     ///< width of the cell [d]
-  double bottom = 0;                    ///< y of the bottom plane [d]
-  double top = 0;                       ///< y of the top plane [d]
+  std::vector<std::int32_t> grain = {};      ///< ids of the crystalline interior grains, ascending
+  std::vector<std::int32_t> label = {};      ///< number of the crystallite of each entry of `grain`
+  std::vector<std::int32_t> size = {};       ///< grains in each crystallite
+  std::vector<Eigen::Vector3d> centre = {};  ///< centre of mass of each crystallite [d]
+  double width = 0;                          ///< width of the cell [d]
+  double bottom = 0;                         ///< y of the bottom plane [d]
+  double top = 0;                            ///< y of the top plane [d]
+
+  std::int32_t largest() const {  ///< grains in the largest crystallite; 0 if there is none
+    return size.empty() ? 0 : std::ranges::max(size);
+  }
 };
 
-/// Centres refer to the untilted cell: the displacement of the side walls at the height of each
-/// grain is subtracted from its x, so that 0 <= x <= width. z is the circular mean over the period,
-/// in [0, depth). It is accurate for crystallites that are small compared with the period.
-CrystalliteMap crystallite_map(const Crystallites& crystallites, const Cell& cell,
+/// `crystallite`: the number of each grain's crystallite, from crystallites(). Centres refer to the
+/// untilted cell: the displacement of the side walls at the height of each grain is subtracted from
+/// its x, so that 0 <= x <= width. z is the circular mean over the period, in [0, depth). It is
+/// accurate for crystallites that are small compared with the period.
+CrystalliteMap crystallite_map(std::span<const std::int32_t> crystallite, const Cell& cell,
                                const WallPose& pose, const Eigen::Matrix3Xd& positions);
 
 }  // namespace shearcell

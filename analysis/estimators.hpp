@@ -70,8 +70,12 @@ RunValue at_cycles(const FrameRun& run, const NumberColumn& column, double first
 /// these cycles has no value. `name`: the column's name, for use in sentences.
 Scalar over_cycles(const std::string& name, const std::string& column, double first, double last);
 
+/// Width of the bins in phi. Bins begin at integer multiples of this width. Runs reach the same phi
+/// at different cycles, so runs are averaged at equal phi. [choice]
+inline constexpr double phi_bin = 0.002;
+
 /// Mean of a column over phi from `low` to `high`. Straight lines join the means in the run's bins
-/// of phi (binning.hpp) and are integrated. `name`: the column's name, for use in sentences.
+/// of phi and are integrated. `name`: the column's name, for use in sentences.
 Scalar over_phi(const std::string& name, const std::string& column, double low, double high);
 
 /// Decides the claim from the mean of `a` minus the mean of `b`. Runs that share a packing form

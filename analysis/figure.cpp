@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "analysis/figure.hpp"
 
-#include "analysis/figures/figures.hpp"
-
 namespace shearcell {
+
+// Each function is defined in a file of analysis/figures/.
+using MakeFigure = FigureResult(const Frame& frame);
+MakeFigure figure_table1, figure_s7, figure_c, figure_committor, figure_nucleation,
+    figure_nucleation_core;
 
 std::span<const Figure> computed_figures() {
   using enum FigureForm;

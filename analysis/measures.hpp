@@ -62,18 +62,24 @@ struct GrainScale {
 };
 
 struct Measure {
-  std::string_view name;  ///< ends in the unit, unless the measure is a count or a pure number
+  std::string name;       ///< ends in the unit, unless the measure is a count or a pure number
   std::string_view unit;  ///< "1" if it has no unit
-  std::string_view meaning;
+  std::string meaning;
   MeasureKind kind = MeasureKind::number;
+  /// Name for use in sentences; if empty, `name` is used. Required for kinds `run` and `grains`.
+  std::string_view words = {};
   std::string_view x = {}, x_unit = {};  ///< x axis of a curve
   GrainScale scale = {};                 ///< used if `kind` is `grains`
   RunValue (*of_run)(const FrameRun& run) = nullptr;
-  /// Name for use in sentences; if empty, `name` is used. Required for kinds `run` and `grains`.
-  std::string_view words = {};
   std::string_view reach = {};  ///< the event that a run must reach to have a value
   bool waits = false;           ///< the value is the cycle of an event that may never occur
 };
+
+inline Measure of_grains(std::string name, std::string_view unit, std::string meaning,
+                         std::string_view words, GrainScale scale) {
+  return {std::move(name), unit, std::move(meaning), MeasureKind::grains, words, {}, {},
+          std::move(scale)};
+}
 
 /// Energies of all grains and the moving wall over one cycle [m d^2/s^2].
 struct CycleEnergies {
@@ -122,7 +128,7 @@ struct Provider {
   /// Returns an object with a value for each measure, by name. A curve is {"x", "y"}; a measure of
   /// each grain is an array. A measure is left out if the run lacks a checkpoint or the shear that
   /// the measure needs.
-  nlohmann::json (*compute)(const MeasureInput& input) = nullptr;
+  std::function<nlohmann::json(const MeasureInput& input)> compute = {};
   std::uint64_t cycles_back = 0;  ///< needs a second checkpoint, this many cycles earlier; 0: no
   ComputedFrom from = ComputedFrom::checkpoint;
   std::string_view cost = {};  ///< computing time of a simulation, in words

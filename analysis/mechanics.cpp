@@ -22,11 +22,12 @@ struct Touch {
   std::int32_t grain, other;  // other: -1 for a wall
 };
 
-// A grain with fewer than four contacts is a rattler. Contacts with rattlers do not count, so
-// rattlers are removed until each remaining grain has at least four contacts.
-std::vector<std::uint8_t> find_rattlers(std::size_t grains, std::span<const Touch> touches) {
+// Contacts of each grain with walls and with grains that are not rattlers; 0 for a rattler. A grain
+// with fewer than four contacts is a rattler. Contacts with rattlers do not count, so rattlers are
+// removed until each remaining grain has at least four contacts.
+std::vector<int> held_contacts(std::size_t grains, std::span<const Touch> touches) {
   std::vector<std::uint8_t> rattler(grains, 0);
-  for (bool any_more = true; any_more;) {
+  while (true) {
     std::vector<int> held(grains, 0);
     for (const Touch& touch : touches) {
       const auto a = static_cast<std::size_t>(touch.grain);
@@ -35,14 +36,14 @@ std::vector<std::uint8_t> find_rattlers(std::size_t grains, std::span<const Touc
       ++held[a];
       held[b] += a == b ? 0 : 1;
     }
-    any_more = false;
+    bool any_more = false;
     for (std::size_t i = 0; i < grains; ++i) {
       if (rattler[i] != 0 || held[i] >= kHeld) continue;
       rattler[i] = 1;
       any_more = true;
     }
+    if (!any_more) return held;
   }
-  return rattler;
 }
 
 struct ContactSums {
@@ -50,11 +51,13 @@ struct ContactSums {
   double squares = 0;                                           // of overlaps [d^2]
   Eigen::Matrix<double, 3, 4> force = decltype(force)::Zero();  // force on each wall [k d]
   std::vector<Touch> touches;
+  std::vector<int> contacts;  // of each grain
   std::vector<double> trace;  // virial trace of each grain [k d^2]
 };
 
 ContactSums sums_of(const Checkpoint& checkpoint, GrainMask interior) {
   ContactSums sums;
+  sums.contacts.assign(interior.size(), 0);
   sums.trace.assign(interior.size(), 0.0);
   const auto grain = [](std::int32_t id) { return static_cast<std::size_t>(id); };
   const auto add = [&](const Contact& contact) {
@@ -63,12 +66,14 @@ ContactSums sums_of(const Checkpoint& checkpoint, GrainMask interior) {
     const double arm = contact.kind == Contact::Kind::wall_plane ? 0.5 - contact.overlap
                                                                  : 0.5 * (1 - contact.overlap);
     const double moment = contact.overlap * arm;
+    ++sums.contacts[grain(contact.grain)];
     sums.trace[grain(contact.grain)] += moment;
     if (contact.kind != Contact::Kind::grain) {
       sums.force.col(static_cast<Eigen::Index>(contact.side)) -= contact.overlap * contact.normal;
       sums.touches.push_back({contact.grain, -1});
       return;
     }
+    ++sums.contacts[grain(contact.other)];
     sums.trace[grain(contact.other)] += moment;
     sums.touches.push_back({contact.grain, contact.other});
     const int ends = (interior[grain(contact.grain)] != 0 ? 1 : 0) +
@@ -81,59 +86,29 @@ ContactSums sums_of(const Checkpoint& checkpoint, GrainMask interior) {
 
 // Sum over interior grains of (velocity - mean flow)^2 [d^2/s^2]. The mean flow is linear in y.
 double fluctuation(const State& state, GrainMask interior) {
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  double count = 0, height = 0;
-  const auto each = [&](auto&& visit) {
+  const auto sum = [&](const auto& value_of) {
+    double total = 0;
     for (Eigen::Index i = 0; i < state.position.cols(); ++i) {
-      if (interior[static_cast<std::size_t>(i)] != 0) visit(i);
+      if (interior[static_cast<std::size_t>(i)] != 0) total += value_of(i);
     }
+    return total;
   };
-  each([&](Eigen::Index i) {
-    mean += state.velocity.col(i);
-    height += state.position(1, i);
-    ++count;
-  });
-  mean /= count;
-  height /= count;
-  double product = 0, square = 0;
-  each([&](Eigen::Index i) {
-    const double y = state.position(1, i) - height;
-    product += y * (state.velocity(0, i) - mean.x());
-    square += y * y;
-  });
+  const double count = sum([](Eigen::Index) { return 1; });
+  Eigen::Vector3d mean;
+  for (const int axis : {0, 1, 2}) {
+    mean[axis] = sum([&](Eigen::Index i) { return state.velocity(axis, i); }) / count;
+  }
+  const double height = sum([&](Eigen::Index i) { return state.position(1, i); }) / count;
+  const auto y = [&](Eigen::Index i) { return state.position(1, i) - height; };
+  const double square = sum([&](Eigen::Index i) { return y(i) * y(i); });
+  const double product =
+      sum([&](Eigen::Index i) { return y(i) * (state.velocity(0, i) - mean.x()); });
   const double rate = square > 0 ? product / square : 0;
-  double sum = 0;
-  each([&](Eigen::Index i) {
+  return sum([&](Eigen::Index i) {
     Eigen::Vector3d v = state.velocity.col(i) - mean;
-    v.x() -= rate * (state.position(1, i) - height);
-    sum += v.squaredNorm();
+    v.x() -= rate * y(i);
+    return v.squaredNorm();
   });
-  return sum;
-}
-
-void set_coordination(std::size_t grains, std::span<const Touch> touches, GrainMask interior,
-                      Mechanics& m) {
-  const std::vector<std::uint8_t> rattler = find_rattlers(grains, touches);
-  double count = 0, rattlers = 0, ends = 0, held_ends = 0;
-  for (std::size_t i = 0; i < grains; ++i) {
-    if (interior[i] == 0) continue;
-    ++count;
-    rattlers += rattler[i];
-  }
-  for (const auto& [grain, other] : touches) {
-    const auto free = [&](std::int32_t i) {
-      return i >= 0 && rattler[static_cast<std::size_t>(i)] != 0;
-    };
-    const bool held = !free(grain) && !free(other);
-    for (const std::int32_t i : {grain, other}) {
-      if (i < 0 || interior[static_cast<std::size_t>(i)] == 0) continue;
-      ++ends;
-      held_ends += held ? 1 : 0;
-    }
-  }
-  m.coordination = ends / count;
-  m.rattlers = 100 * rattlers / count;
-  m.coordination_without_rattlers = held_ends / (count - rattlers);
 }
 
 }  // namespace
@@ -152,7 +127,11 @@ Mechanics mechanics(const Checkpoint& checkpoint, std::span<const double> cell_v
   m.pressure = m.stress.trace() / 3;
   m.deviator = std::sqrt(0.5 * (m.stress - m.pressure * Eigen::Matrix3d::Identity()).squaredNorm());
   m.kinetic_pressure = fluctuation(state, interior) / (3 * volume);
-  set_coordination(grains, sums.touches, interior, m);
+  const std::vector<int> held = held_contacts(grains, sums.touches);
+  m.coordination = mean_over(interior, [&](std::size_t i) { return sums.contacts[i]; });
+  m.rattlers = percent_of(interior, [&](std::size_t i) { return held[i] == 0; });
+  m.coordination_without_rattlers =
+      mean_over(interior, [&](std::size_t i) { return held[i] > 0 ? held[i] : std::nan(""); });
   m.wall_force = sums.force.topRows<2>();
   const auto count = static_cast<double>(grains);
   m.elastic_energy = 0.5 * sums.squares / count;

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <optional>
 
 #include "analysis/error.hpp"
 #include "analysis/measures.hpp"
@@ -15,6 +14,8 @@
 
 namespace shearcell {
 namespace {
+
+using nlohmann::json;
 
 /// Largest distance of neighbours in the analysis of motion [d], near the first minimum of g(r).
 constexpr double motion_neighbour_d = 1.5;
@@ -92,131 +93,122 @@ Motion motion(const Checkpoint& earlier, const Checkpoint& later) {
   return found;
 }
 
-/// One entry per grain: 1 for a crystalline grain with a neighbour that is not crystalline, else 0.
-/// `crystalline` is 1 or 0 for each grain.
-std::vector<std::uint8_t> crystal_boundary(const Checkpoint& checkpoint,
-                                           std::span<const std::uint8_t> crystalline) {
-  std::vector<std::uint8_t> boundary(crystalline.size(), 0);
+enum class Place { disordered, inside_crystal, crystal_boundary };
+
+/// The place of each grain. A crystalline grain is at the boundary if a neighbour is disordered.
+std::vector<Place> places_of(const Checkpoint& checkpoint,
+                             const std::vector<Structure>& structure) {
+  std::vector<Place> places;
+  for (const Structure one : structure) {
+    places.push_back(one == Structure::disordered ? Place::disordered : Place::inside_crystal);
+  }
   for_each_pair(checkpoint.cell, pose_of(checkpoint), checkpoint.state.position, motion_neighbour_d,
                 [&](std::int32_t i, std::int32_t j, const Eigen::Vector3d&) {
-                  const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
-                  if (crystalline[a] == crystalline[b]) return;
-                  boundary[crystalline[a] != 0 ? a : b] = 1;
+                  Place &a = places[static_cast<std::size_t>(i)],
+                        &b = places[static_cast<std::size_t>(j)];
+                  if ((a == Place::disordered) == (b == Place::disordered)) return;
+                  (a == Place::disordered ? b : a) = Place::crystal_boundary;
                 });
-  return boundary;
+  return places;
 }
 
-std::optional<Motion> motion_of(const MeasureInput& input) {
-  const Checkpoint* earlier = input.earlier ? input.earlier() : nullptr;
-  if (earlier == nullptr) return std::nullopt;
-  return motion(*earlier, *input.checkpoint);
+/// Computes result_of(checkpoint, grains, motion since the earlier checkpoint); an empty result
+/// without this checkpoint.
+auto from_motion(auto result_of) {
+  return [result_of](const MeasureInput& input) -> json {
+    const Checkpoint* earlier = input.earlier ? input.earlier() : nullptr;
+    if (earlier == nullptr) return json::object();
+    const Motion moved = motion(*earlier, *input.checkpoint);
+    return result_of(*input.checkpoint, input.analysis->grains, moved);
+  };
 }
 
 /// Means over interior grains. The names of the means end in `lag`.
-nlohmann::json means_of(const Motion& moved, const GrainMeasures& grains, const std::string& lag) {
+json means_of(const Motion& moved, const GrainMeasures& grains, const std::string& lag) {
   const auto square = [&](std::size_t i) { return moved.square(i); };
   const auto nonaffine = [&](std::size_t i) { return moved.nonaffine[i]; };
-  return {{"msd_" + lag, interior_mean(grains, square)},
-          {"d2min_" + lag, interior_mean(grains, nonaffine)}};
+  return {{"msd_" + lag, mean_over(grains.interior, square)},
+          {"d2min_" + lag, mean_over(grains.interior, nonaffine)}};
 }
 
-template <std::uint64_t cycles>
-nlohmann::json motion_over_cycles(const MeasureInput& input) {
-  const std::optional<Motion> moved = motion_of(input);
-  if (!moved) return nlohmann::json::object();
-  return means_of(*moved, input.analysis->grains, fmt::format("{}_cycles_d2", cycles));
-}
-
-nlohmann::json motion_over_one_cycle(const MeasureInput& input) {
-  const std::optional<Motion> moved = motion_of(input);
-  if (!moved) return nlohmann::json::object();
-  const GrainMeasures& grains = input.analysis->grains;
-  std::vector<std::uint8_t> crystalline;
-  for (const Structure structure : grains.structure) {
-    crystalline.push_back(structure == Structure::disordered ? 0 : 1);
-  }
-  const std::vector<std::uint8_t> boundary = crystal_boundary(*input.checkpoint, crystalline);
-  const auto returned = [&](std::size_t i) {
-    return moved->square(i) <= reversible_d * reversible_d;
-  };
-  const auto square_of = [&](bool is_crystalline, bool at_boundary) {
-    return interior_mean(grains, [&](std::size_t i) {
-      const bool counts =
-          (crystalline[i] != 0) == is_crystalline && (boundary[i] != 0) == at_boundary;
-      return counts ? moved->square(i) : std::nan("");
+json one_cycle(const Checkpoint& checkpoint, const GrainMeasures& grains, const Motion& moved) {
+  const std::vector<Place> places = places_of(checkpoint, grains.structure);
+  const auto square_in = [&](Place place) {
+    return mean_over(grains.interior, [&](std::size_t i) {
+      return places[i] == place ? moved.square(i) : std::nan("");
     });
   };
-  nlohmann::json values = means_of(*moved, grains, "1_cycle_d2");
-  values["reversible_percent"] = percent_of_interior(grains, returned);
-  values["msd_inside_crystal_d2"] = square_of(true, false);
-  values["msd_crystal_boundary_d2"] = square_of(true, true);
-  values["msd_disordered_d2"] = square_of(false, false);
+  json values = means_of(moved, grains, "1_cycle_d2");
+  values["reversible_percent"] = percent_of(grains.interior, [&](std::size_t i) {
+    return moved.square(i) <= reversible_d * reversible_d;
+  });
+  values["msd_inside_crystal_d2"] = square_in(Place::inside_crystal);
+  values["msd_crystal_boundary_d2"] = square_in(Place::crystal_boundary);
+  values["msd_disordered_d2"] = square_in(Place::disordered);
   return values;
+}
+
+json of_each_grain(const Checkpoint&, const GrainMeasures&, const Motion& moved) {
+  const Eigen::VectorXd displacement = moved.displacement.colwise().norm();
+  return {{"displacement_d", std::vector(displacement.begin(), displacement.end())},
+          {"d2min_d2", moved.nonaffine}};
+}
+
+/// Each lag has its own provider, so a pruned checkpoint affects only the lag that needs it.
+Provider motion_over(std::uint64_t cycles) {
+  const std::string lag = fmt::format("{}_cycles_d2", cycles);
+  const auto means = [lag](const Checkpoint&, const GrainMeasures& grains, const Motion& moved) {
+    return means_of(moved, grains, lag);
+  };
+  return {
+      .name = fmt::format("motion_{}", cycles),
+      .parameters = with(interior_criteria(), {{"neighbour_d", motion_neighbour_d}}),
+      .measures = {{"msd_" + lag, "d^2",
+                    fmt::format("mean squared displacement of interior grains over {} cycles",
+                                cycles)},
+                   {"d2min_" + lag, "d^2",
+                    fmt::format("D^2_min of the motion over {} cycles, mean over interior grains",
+                                cycles)}},
+      .compute = from_motion(means),
+      .cycles_back = cycles};
 }
 
 }  // namespace
 
 std::vector<Provider> motion_providers() {
-  const auto compute = [](const MeasureInput& input) -> nlohmann::json {
-    const std::optional<Motion> moved = motion_of(input);
-    if (!moved) return nlohmann::json::object();
-    const Eigen::VectorXd displacement = moved->displacement.colwise().norm();
-    return {{"displacement_d", std::vector(displacement.begin(), displacement.end())},
-            {"d2min_d2", moved->nonaffine}};
-  };
-  // Each lag has its own provider, so a pruned checkpoint affects only the lag that needs it.
-  return {{.name = "motion",
-           .parameters = with(crystal_criteria(), {{"neighbour_d", motion_neighbour_d},
-                                                   {"reversible_d", reversible_d}}),
-           .measures =
-               {{"msd_1_cycle_d2", "d^2",
-                 "mean squared displacement of interior grains over 1 cycle, in the frame of the "
-                 "walls"},
-                {"d2min_1_cycle_d2", "d^2",
-                 "mean non-affine squared displacement D^2_min of interior grains over 1 cycle"},
-                {"reversible_percent", "%",
-                 "interior grains at most 0.01 d from their position one cycle earlier"},
-                {"msd_inside_crystal_d2", "d^2",
-                 "mean squared displacement of crystalline grains inside a crystal, over 1 cycle"},
-                {"msd_crystal_boundary_d2", "d^2",
-                 "mean squared displacement of crystalline grains next to disordered grains, over "
-                 "1 cycle"},
-                {"msd_disordered_d2", "d^2",
-                 "mean squared displacement of disordered grains, over 1 cycle"}},
-           .compute = motion_over_one_cycle,
-           .cycles_back = 1},
-          {.name = "motion_10",
-           .parameters = with(interior_criteria(), {{"neighbour_d", motion_neighbour_d}}),
-           .measures = {{"msd_10_cycles_d2", "d^2",
-                         "mean squared displacement of interior grains over 10 cycles"},
-                        {"d2min_10_cycles_d2", "d^2",
-                         "D^2_min of the motion over 10 cycles, mean over interior grains"}},
-           .compute = motion_over_cycles<10>,
-           .cycles_back = 10},
-          {.name = "motion_100",
-           .parameters = with(interior_criteria(), {{"neighbour_d", motion_neighbour_d}}),
-           .measures = {{"msd_100_cycles_d2", "d^2",
-                         "mean squared displacement of interior grains over 100 cycles"},
-                        {"d2min_100_cycles_d2", "d^2",
-                         "D^2_min of the motion over 100 cycles, mean over interior grains"}},
-           .compute = motion_over_cycles<100>,
-           .cycles_back = 100},
-          {.name = "grain_motion",
-           .parameters = {{"neighbour_d", motion_neighbour_d}},
-           .measures = {{.name = "displacement_d",
-                         .unit = "d",
-                         .meaning = "displacement over the previous cycle",
-                         .kind = MeasureKind::grains,
-                         .scale = {.low = 1e-3, .high = 1, .logarithmic = true},
-                         .words = "displacement in a cycle"},
-                        {.name = "d2min_d2",
-                         .unit = "d^2",
-                         .meaning = "D^2_min of the motion over the previous cycle",
-                         .kind = MeasureKind::grains,
-                         .scale = {.low = 1e-6, .high = 1, .logarithmic = true},
-                         .words = "non-affine motion in a cycle"}},
-           .compute = compute,
-           .cycles_back = 1}};
+  return {
+      {.name = "motion",
+       .parameters = with(crystal_criteria(),
+                          {{"neighbour_d", motion_neighbour_d}, {"reversible_d", reversible_d}}),
+       .measures =
+           {{"msd_1_cycle_d2", "d^2",
+             "mean squared displacement of interior grains over 1 cycle, in the frame of the "
+             "walls"},
+            {"d2min_1_cycle_d2", "d^2",
+             "mean non-affine squared displacement D^2_min of interior grains over 1 cycle"},
+            {"reversible_percent", "%",
+             "interior grains at most 0.01 d from their position one cycle earlier"},
+            {"msd_inside_crystal_d2", "d^2",
+             "mean squared displacement of crystalline grains inside a crystal, over 1 cycle"},
+            {"msd_crystal_boundary_d2", "d^2",
+             "mean squared displacement of crystalline grains next to disordered grains, over "
+             "1 cycle"},
+            {"msd_disordered_d2", "d^2",
+             "mean squared displacement of disordered grains, over 1 cycle"}},
+       .compute = from_motion(one_cycle),
+       .cycles_back = 1},
+      motion_over(10),
+      motion_over(100),
+      {.name = "grain_motion",
+       .parameters = {{"neighbour_d", motion_neighbour_d}},
+       .measures = {of_grains("displacement_d", "d", "displacement over the previous cycle",
+                              "displacement in a cycle",
+                              {.low = 1e-3, .high = 1, .logarithmic = true}),
+                    of_grains("d2min_d2", "d^2", "D^2_min of the motion over the previous cycle",
+                              "non-affine motion in a cycle",
+                              {.low = 1e-6, .high = 1, .logarithmic = true})},
+       .compute = from_motion(of_each_grain),
+       .cycles_back = 1}};
 }
 
 }  // namespace shearcell

@@ -10,9 +10,10 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <numeric>
 #include <set>
 
-#include "analysis/binning.hpp"
+#include "analysis/estimators.hpp"
 #include "analysis/published.hpp"
 
 namespace shearcell {
@@ -177,29 +178,28 @@ std::vector<double> nucleus_places(const FrameRun& run, CellAxis axis, Seen seen
 }
 
 std::vector<DensityBin> density(std::span<const std::vector<double>> groups, std::size_t bins) {
-  std::vector<std::vector<double>> histograms;
-  std::vector<std::size_t> every;
+  const auto count = static_cast<double>(bins);
+  std::vector<Eigen::ArrayXd> histograms;
   for (const std::vector<double>& places : groups) {
-    every.push_back(histograms.size());
-    std::vector<double> counts(bins);
+    auto& histogram =
+        histograms.emplace_back(Eigen::ArrayXd::Zero(static_cast<Eigen::Index>(bins)));
     for (const double p : places) {
-      const double k = p * static_cast<double>(bins);
-      ++counts[static_cast<std::size_t>(std::clamp(k, 0.0, static_cast<double>(bins - 1)))];
+      ++histogram[static_cast<Eigen::Index>(std::clamp(p * count, 0.0, count - 1))];
     }
-    histograms.push_back(std::move(counts));
   }
+  std::vector<std::size_t> every(groups.size());
+  std::iota(every.begin(), every.end(), 0);
   std::vector<DensityBin> result;
-  const double width = 1 / static_cast<double>(bins);
   for (std::size_t k = 0; k < bins; ++k) {
     const auto density_of = [&](std::span<const std::size_t> selection) {
       double inside = 0, all = 0;
       for (const std::size_t group : selection) {
-        inside += histograms[group][k];
-        for (const double count : histograms[group]) all += count;
+        inside += histograms[group][static_cast<Eigen::Index>(k)];
+        all += histograms[group].sum();
       }
-      return inside / all * static_cast<double>(bins);
+      return inside / all * count;
     };
-    const auto low = static_cast<double>(k) * width;
+    const double width = 1 / count, low = static_cast<double>(k) * width;
     result.push_back(
         {low, low + width, density_of(every), bootstrap_error(groups.size(), density_of)});
   }

@@ -11,24 +11,6 @@
 namespace shearcell {
 namespace {
 
-struct Point {
-  double phi;
-  double log_size;
-  double cycle;
-};
-
-std::vector<Point> points_of(const FrameRun& run) {
-  std::vector<Point> points;
-  for (const CheckpointMeasures& checkpoint : run.checkpoints) {
-    const Measures& m = checkpoint.measures;
-    const double phi = m.number("phi");
-    if (!std::isfinite(phi)) continue;
-    const double size = std::max(1.0, m.number("largest_crystallite"));
-    points.push_back({phi, std::log(size), checkpoint.cycle});
-  }
-  return points;
-}
-
 double critical_size_for(const FrameRun& run) {
   return published_nearest(number_of(run, "amplitude_rad")).critical_size;
 }
@@ -56,7 +38,15 @@ RunOnset onset_by_size(const FrameRun& run) {
 RunOnset onset_by_slope(const FrameRun& run) {
   const RunOnset by_size = onset_by_size(run);
   if (by_size.observed != Observed::yes) return by_size;
-  const std::vector<Point> points = points_of(run);
+  struct Point {
+    double phi, log_size, cycle;
+  };
+  std::vector<Point> points;
+  for (const CheckpointMeasures& checkpoint : run.checkpoints) {
+    const double phi = checkpoint.measures.number("phi");
+    const double size = std::max(1.0, checkpoint.measures.number("largest_crystallite"));
+    if (std::isfinite(phi)) points.push_back({phi, std::log(size), checkpoint.cycle});
+  }
   const auto [lowest, highest] = std::ranges::minmax(points, {}, &Point::phi);
   constexpr double step = slope_window / 32;
   RunOnset found{Observed::unclear};
@@ -102,8 +92,8 @@ std::vector<Provider> onset_providers() {
                    .unit = "1",
                    .meaning = meaning,
                    .kind = MeasureKind::run,
-                   .of_run = value,
                    .words = words,
+                   .of_run = value,
                    .reach = "the onset",
                    .waits = waits};
   };

@@ -58,6 +58,18 @@ std::vector<std::uint8_t> interior_grains(const Cell& cell, const WallPose& pose
   return interior;
 }
 
+InteriorRegion interior_region(const Cell& cell, const WallPose& pose) {
+  const double margin = interior_margin(cell);
+  InteriorRegion region;
+  region.tan_theta = pose.tan_theta;
+  region.bottom = pose.bottom + margin;
+  region.height = pose.top - pose.bottom - 2 * margin;
+  region.depth = cell.depth;
+  region.width = cell.width - 2 * margin / pose.cos_theta;
+  region.left = (region.bottom - pose.top) * pose.tan_theta + margin / pose.cos_theta;
+  return region;
+}
+
 double local_packing_fraction(double largest_overlap, double cell_volume) {
   return sphere_volume * cube(1 - largest_overlap) / cell_volume;
 }

@@ -49,6 +49,21 @@ std::vector<double> distances_from_walls(const Cell& cell, const WallPose& pose,
 std::vector<std::uint8_t> interior_grains(const Cell& cell, const WallPose& pose,
                                           const Eigen::Matrix3Xd& grains);
 
+/// The region in which the centres of interior grains lie. The borders of the region are parallel
+/// to the walls; in z it is periodic.
+struct InteriorRegion {
+  double left = 0;    ///< x of the left border at y = bottom [d]
+  double bottom = 0;  ///< y of the lower border [d]
+  double width = 0;   ///< in x [d]
+  double height = 0;  ///< [d]
+  double depth = 0;   ///< period [d]
+  double tan_theta = 0;
+
+  double volume() const { return width * height * depth; }
+};
+/// If the cell is too small for interior grains, the region has a negative width or height.
+InteriorRegion interior_region(const Cell& cell, const WallPose& pose);
+
 /// phi_local of one grain: Eq. S4 for this grain alone, (pi/6) (1 - delta_max)^3 / V_cell.
 double local_packing_fraction(double largest_overlap, double cell_volume);
 

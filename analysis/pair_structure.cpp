@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "analysis/pair_structure.hpp"
-
+// g(r) and S(k) of interior grains.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -19,16 +18,18 @@ namespace shearcell {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
+constexpr double pair_bin_d = 0.02;        // width of the bins in r [d]
+constexpr double pair_reach_d = 5;         // largest r; at most half the depth [d]
+constexpr double wave_bin_per_d = 0.25;    // width of the bins in |k| [1/d]
+constexpr double largest_wave_per_d = 25;  // largest |k| [1/d]
 
 Eigen::Matrix3Xd interior_sites(const MeasureInput& input) {
-  const Eigen::Matrix3Xd& grains = input.checkpoint->state.position;
   const std::vector<std::uint8_t>& interior = input.analysis->grains.interior;
-  Eigen::Matrix3Xd found(3, std::count(interior.begin(), interior.end(), std::uint8_t{1}));
-  Eigen::Index next = 0;
-  for (Eigen::Index i = 0; i < grains.cols(); ++i) {
-    if (interior[static_cast<std::size_t>(i)] != 0) found.col(next++) = grains.col(i);
+  std::vector<std::size_t> sites;
+  for (std::size_t i = 0; i < interior.size(); ++i) {
+    if (interior[i] != 0) sites.push_back(i);
   }
-  return found;
+  return input.checkpoint->state.position(Eigen::all, sites);
 }
 
 // Volume of the set of pairs (r, r + s) for which r and r + s are in the region and |s| is in the
@@ -221,23 +222,11 @@ MeasuredCurve structure_factor(const MeasureInput& input) {
 
 }  // namespace
 
-InteriorRegion interior_region(const Cell& cell, const WallPose& pose) {
-  const double margin = interior_margin(cell);
-  InteriorRegion region;
-  region.tan_theta = pose.tan_theta;
-  region.bottom = pose.bottom + margin;
-  region.height = pose.top - pose.bottom - 2 * margin;
-  region.depth = cell.depth;
-  region.width = cell.width - 2 * margin / pose.cos_theta;
-  region.left = (region.bottom - pose.top) * pose.tan_theta + margin / pose.cos_theta;
-  return region;
-}
-
 std::vector<Provider> pair_structure_providers() {
   return {
       {.name = "pair_correlation",
        .parameters = with(interior_criteria(), {{"bin_d", pair_bin_d}, {"reach_d", pair_reach_d}}),
-       .measures = {{"pair_correlation", "1", "g(r) of interior grains", MeasureKind::curve,
+       .measures = {{"pair_correlation", "1", "g(r) of interior grains", MeasureKind::curve, "",
                      "distance_d", "d"}},
        .compute =
            [](const MeasureInput& input) {
@@ -246,7 +235,7 @@ std::vector<Provider> pair_structure_providers() {
       {.name = "structure_factor",
        .parameters = with(interior_criteria(),
                           {{"bin_per_d", wave_bin_per_d}, {"largest_per_d", largest_wave_per_d}}),
-       .measures = {{"structure_factor", "1", "S(k) of interior grains", MeasureKind::curve,
+       .measures = {{"structure_factor", "1", "S(k) of interior grains", MeasureKind::curve, "",
                      "wave_number_per_d", "1/d"}},
        .compute = [](const MeasureInput& input) {
          return nlohmann::json{{"structure_factor", structure_factor(input)}};

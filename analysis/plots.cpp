@@ -18,7 +18,6 @@
 #include <vector>
 
 #include "analysis/axes.hpp"
-#include "analysis/binning.hpp"
 #include "analysis/claims.hpp"
 #include "analysis/error.hpp"
 #include "analysis/estimators.hpp"

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
-#include <span>
 
 #include "analysis/measures.hpp"
 #include "analysis/packing_fraction.hpp"
@@ -31,21 +29,6 @@ std::vector<std::size_t> layers_of(const Checkpoint& checkpoint, const WallPose&
   return found;
 }
 
-/// phi of the grains whose distance from the wall surfaces is in [low, high) [d].
-double phi_between(const GrainMeasures& grains, std::span<const double> distance, double low,
-                   double high) {
-  std::vector<std::uint8_t> inside;
-  for (const double d : distance) inside.push_back(d >= low && d < high ? 1 : 0);
-  return packing_fractions(grains.largest_overlap, grains.cell_volume, inside).phi;
-}
-
-double crystalline_percent(const GrainMeasures& grains, double least_phi_local, double tolerance) {
-  return percent_of_interior(grains, [&](std::size_t i) {
-    return structure(grains.phi_local[i], grains.q6[i], least_phi_local, tolerance) !=
-           Structure::disordered;
-  });
-}
-
 /// Curves with one entry per layer. Layers are one diameter thick, from the plane of the bottom
 /// wall to the plane of the top wall. A grain counts in the layer of its centre if it is at least
 /// 1.5 d from the surfaces of the side walls. The value of a layer without grains is NaN.
@@ -58,24 +41,22 @@ json profiles_of(const MeasureInput& input) {
   const double unit_Pa = mechanical_units(input).stress_Pa;
   MeasuredCurve phi, pressure, coordination, crystalline;
   for (std::size_t l = 0; l < layers; ++l) {
-    std::vector<std::uint8_t> inside(layer_of.size(), 0);
-    double count = 0, volume = 0, trace = 0, contacts = 0, ordered = 0;
+    std::vector<std::uint8_t> inside;
+    double volume = 0, trace = 0;
     for (std::size_t i = 0; i < layer_of.size(); ++i) {
+      inside.push_back(layer_of[i] == l ? 1 : 0);
       if (layer_of[i] != l) continue;
-      inside[i] = 1;
-      ++count;
       volume += grains.cell_volume[i];
       trace += input.analysis->mechanics.grain_pressure[i] * grains.cell_volume[i];
-      contacts += grains.contacts[i];
-      ordered += grains.structure[i] == Structure::disordered ? 0 : 1;
     }
     for (MeasuredCurve* one : {&phi, &pressure, &coordination, &crystalline}) {
       one->x.push_back(static_cast<double>(l) + 0.5);
     }
     phi.y.push_back(packing_fractions(grains.largest_overlap, grains.cell_volume, inside).phi);
     pressure.y.push_back(trace / volume * unit_Pa);
-    coordination.y.push_back(contacts / count);
-    crystalline.y.push_back(100 * ordered / count);
+    coordination.y.push_back(mean_over(inside, [&](std::size_t i) { return grains.contacts[i]; }));
+    crystalline.y.push_back(percent_of(
+        inside, [&](std::size_t i) { return grains.structure[i] != Structure::disordered; }));
   }
   return {{"phi_profile", phi},
           {"pressure_profile_Pa", pressure},
@@ -83,72 +64,74 @@ json profiles_of(const MeasureInput& input) {
           {"crystalline_profile_percent", crystalline}};
 }
 
+std::vector<double> distances_from_walls(const MeasureInput& input) {
+  const Checkpoint& c = *input.checkpoint;
+  return distances_from_walls(c.cell, pose_of(c), c.state.position);
+}
+
 /// phi in layers of half a diameter, by distance from the walls; NaN for a layer without grains.
-MeasuredCurve phi_by_wall_distance(const Checkpoint& checkpoint, const GrainMeasures& grains) {
+json wall_distance_of(const MeasureInput& input) {
   constexpr double layer = 0.5;
-  const std::vector<double> distance =
-      distances_from_walls(checkpoint.cell, pose_of(checkpoint), checkpoint.state.position);
+  const GrainMeasures& grains = input.analysis->grains;
+  const std::vector<double> distance = distances_from_walls(input);
   const double farthest = distance.empty() ? 0 : std::ranges::max(distance);
-  MeasuredCurve found;
+  MeasuredCurve phi;
   for (double low = 0; low <= farthest; low += layer) {
-    found.x.push_back(low + layer / 2);
-    found.y.push_back(phi_between(grains, distance, low, low + layer));
+    std::vector<std::uint8_t> inside;
+    for (const double d : distance) inside.push_back(d >= low && d < low + layer ? 1 : 0);
+    phi.x.push_back(low + layer / 2);
+    phi.y.push_back(packing_fractions(grains.largest_overlap, grains.cell_volume, inside).phi);
   }
-  return found;
+  return {{"phi_by_wall_distance", phi}};
 }
 
 /// Number and phi of the core grains; phi is NaN without core grains.
 json core_of(const MeasureInput& input) {
+  const GrainMeasures& grains = input.analysis->grains;
+  std::vector<std::uint8_t> core;
+  for (const double d : distances_from_walls(input)) core.push_back(d >= core_distance ? 1 : 0);
+  return {{"core_grains", static_cast<double>(std::ranges::count(core, 1))},
+          {"core_phi", packing_fractions(grains.largest_overlap, grains.cell_volume, core).phi}};
+}
+
+MeasuredCurve curve_of(const std::vector<double>& x, const auto& y_of) {
+  MeasuredCurve curve{x, {}};
+  for (const double at : x) curve.y.push_back(y_of(at));
+  return curve;
+}
+
+/// Results as functions of one criterion; the other criteria do not change.
+json sensitivity_of(const MeasureInput& input) {
+  const GrainMeasures& grains = input.analysis->grains;
   const Checkpoint& checkpoint = *input.checkpoint;
-  const std::vector<double> distance =
-      distances_from_walls(checkpoint.cell, pose_of(checkpoint), checkpoint.state.position);
-  const auto count = std::ranges::count_if(distance, [](double d) { return d >= core_distance; });
-  return {{"core_grains", static_cast<double>(count)},
-          {"core_phi", phi_between(input.analysis->grains, distance, core_distance,
-                                   std::numeric_limits<double>::infinity())}};
-}
-
-/// Crystalline percentage as a function of the window of q6; the other criteria do not change.
-MeasuredCurve crystalline_by_window(const GrainMeasures& grains) {
-  MeasuredCurve found;
-  for (int n = 1; n <= 20; ++n) {
-    found.x.push_back(n * 0.1 * q6_tolerance);
-    found.y.push_back(crystalline_percent(grains, crystalline_phi_local, found.x.back()));
-  }
-  return found;
-}
-
-MeasuredCurve crystalline_by_phi_local(const GrainMeasures& grains) {
-  MeasuredCurve found;
-  for (int n = -16; n <= 8; ++n) {
-    found.x.push_back(crystalline_phi_local + n * 0.0025);
-    found.y.push_back(crystalline_percent(grains, found.x.back(), q6_tolerance));
-  }
-  return found;
-}
-
-/// Size of the largest crystallite as a function of the smallest face that connects two grains.
-MeasuredCurve largest_by_face(const Checkpoint& checkpoint, const GrainMeasures& grains) {
   const VoronoiDiagram diagram =
       voronoi(checkpoint.cell, pose_of(checkpoint), checkpoint.state.position);
-  MeasuredCurve found;
-  for (const double share : {0.0, 0.0025, 0.005, 0.01, 0.015, 0.02, 0.03, 0.04, 0.05, 0.06}) {
-    found.x.push_back(share);
-    found.y.push_back(crystallites_of(grains, diagram, share).largest);
-  }
-  return found;
+  const auto crystalline = [&](double least_phi_local, double tolerance) {
+    return percent_of(grains.interior, [&](std::size_t i) {
+      return structure(grains.phi_local[i], grains.q6[i], least_phi_local, tolerance) !=
+             Structure::disordered;
+    });
+  };
+  const auto largest = [&](double share) {
+    const std::vector<std::int32_t> label = crystallites_of(grains, diagram, share);
+    return crystallite_map(label, checkpoint.cell, pose_of(checkpoint), checkpoint.state.position)
+        .largest();
+  };
+  std::vector<double> windows, thresholds;
+  for (int n = 1; n <= 20; ++n) windows.push_back(n * 0.1 * q6_tolerance);
+  for (int n = -16; n <= 8; ++n) thresholds.push_back(crystalline_phi_local + n * 0.0025);
+  const auto by_window = [&](double window) { return crystalline(crystalline_phi_local, window); };
+  const auto by_phi_local = [&](double least) { return crystalline(least, q6_tolerance); };
+  return {{"crystalline_by_q6_window_percent", curve_of(windows, by_window)},
+          {"crystalline_by_phi_local_percent", curve_of(thresholds, by_phi_local)},
+          {"largest_by_face",
+           curve_of({0.0, 0.0025, 0.005, 0.01, 0.015, 0.02, 0.03, 0.04, 0.05, 0.06}, largest)}};
 }
 
 }  // namespace
 
 std::vector<Provider> profile_providers() {
   using enum MeasureKind;
-  const auto sensitivity = [](const MeasureInput& input) -> json {
-    const GrainMeasures& grains = input.analysis->grains;
-    return {{"crystalline_by_q6_window_percent", crystalline_by_window(grains)},
-            {"crystalline_by_phi_local_percent", crystalline_by_phi_local(grains)},
-            {"largest_by_face", largest_by_face(*input.checkpoint, grains)}};
-  };
   return {
       {.name = "core",
        .parameters = with(surface_criteria(), {{"core_distance_d", core_distance}}),
@@ -157,14 +140,14 @@ std::vector<Provider> profile_providers() {
        .compute = core_of},
       {.name = "profiles",
        .parameters = with(crystal_criteria(), {{"units", "SI"}}),
-       .measures = {{"phi_profile", "1", "volume fraction of a layer (Eq. S4)", curve, "height_d",
-                     "d"},
+       .measures = {{"phi_profile", "1", "volume fraction of a layer (Eq. S4)", curve, "",
+                     "height_d", "d"},
                     {"pressure_profile_Pa", "Pa", "mean normal stress of a layer, from contacts",
-                     curve, "height_d", "d"},
+                     curve, "", "height_d", "d"},
                     {"coordination_profile", "1",
-                     "contacts per grain in a layer, including wall grains", curve, "height_d",
+                     "contacts per grain in a layer, including wall grains", curve, "", "height_d",
                      "d"},
-                    {"crystalline_profile_percent", "%", "crystalline grains of a layer", curve,
+                    {"crystalline_profile_percent", "%", "crystalline grains of a layer", curve, "",
                      "height_d", "d"}},
        .compute = profiles_of},
       {.name = "wall_distance",
@@ -172,25 +155,21 @@ std::vector<Provider> profile_providers() {
        .measures =
            {{"phi_by_wall_distance", "1",
              "volume fraction of a layer by its distance from the nearest wall surface (Eq. S4)",
-             curve, "wall_distance_d", "d"}},
-       .compute =
-           [](const MeasureInput& input) {
-             return json{{"phi_by_wall_distance",
-                          phi_by_wall_distance(*input.checkpoint, input.analysis->grains)}};
-           }},
+             curve, "", "wall_distance_d", "d"}},
+       .compute = wall_distance_of},
       {.name = "sensitivity",
        .parameters = crystal_criteria(),
        .measures = {{"crystalline_by_q6_window_percent", "%",
                      "crystalline grains if |q6 - q6 of a lattice| may be up to `q6_window`", curve,
-                     "q6_window", "1"},
+                     "", "q6_window", "1"},
                     {"crystalline_by_phi_local_percent", "%",
                      "crystalline grains whose phi_local is at least `phi_local_threshold`", curve,
-                     "phi_local_threshold", "1"},
+                     "", "phi_local_threshold", "1"},
                     {"largest_by_face", "1",
                      "grains in the largest crystallite, as a function of the smallest face that "
                      "connects two grains (area divided by the mean cell surface)",
-                     curve, "connecting_face", "1"}},
-       .compute = sensitivity}};
+                     curve, "", "connecting_face", "1"}},
+       .compute = sensitivity_of}};
 }
 
 }  // namespace shearcell

@@ -10,17 +10,6 @@
 
 namespace shearcell {
 
-/// Table I: the parameters of each simulation, unless a section of the supplement varies one of
-/// them. omega is pi rad/s.
-inline constexpr double published_mass_kg = 2.0e-5;
-inline constexpr double published_diameter_m = 3.0e-3;
-inline constexpr double published_stiffness_N_per_m = 6.54e2;
-inline constexpr double published_drag_kg_per_s = 1.28e-3;
-inline constexpr double published_pressure_Pa = 9.54e2;
-inline constexpr double published_period_s = 2;
-inline constexpr double published_steps_per_cycle = 45600;
-inline constexpr double published_gravity_m_per_s2 = 9.81;
-
 /// Section C. n_bin of A = 0.04 is not published; n_bin of A = 0.05 is used instead. [choice]
 struct PublishedAmplitude {
   double amplitude_rad;

@@ -94,11 +94,10 @@ std::vector<Provider> run_providers() {
       // Makes checkpoints with different shear rates comparable (protocols/rest.hpp).
       {.name = "rest",
        .parameters = {{"rest_s", rest_s}},
-       .measures = {{.name = "phi_at_rest",
-                     .unit = "1",
-                     .meaning = "volume fraction of interior grains (Eq. S4) after 0.1 s "
-                                "between walls that are held in place",
-                     .words = "phi at rest"}},
+       .measures = {{"phi_at_rest", "1",
+                     "volume fraction of interior grains (Eq. S4) after 0.1 s between walls "
+                     "that are held in place",
+                     MeasureKind::number, "phi at rest"}},
        .compute = rest_of,
        .from = ComputedFrom::simulation,
        .cost = "a twentieth of a cycle"},
@@ -124,8 +123,8 @@ std::vector<Provider> run_providers() {
                                 "that shares a run counts the full time. If no processor time was "
                                 "recorded, wall-clock time times the number of processes is used",
                      .kind = MeasureKind::run,
-                     .of_run = [](const FrameRun& run) { return measured(run.core_time_s); },
                      .words = "the core time",
+                     .of_run = [](const FrameRun& run) { return measured(run.core_time_s); },
                      .reach = "its end"}},
        .from = ComputedFrom::history}};
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "analysis/styles.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -8,7 +10,6 @@
 #include <set>
 #include <utility>
 
-#include "analysis/published.hpp"
 #include "provenance/json_text.hpp"
 
 namespace shearcell {
@@ -52,6 +53,15 @@ Look amplitude_look(double amplitude_rad, std::size_t k) {
   const bool published = std::abs(nearest.amplitude_rad - amplitude_rad) < 1e-6;
   const std::size_t colour = published ? colours[place] : k;
   return {safe_colours[colour % safe_colours.size()], curve_symbol(published ? place : k)};
+}
+
+std::vector<AmplitudeRuns> by_amplitude(std::span<const FrameRun> runs) {
+  std::vector<AmplitudeRuns> all;
+  for (auto& [amplitude, members] : runs_by(runs, "amplitude_rad")) {
+    all.push_back({amplitude, members, formula(fmt::format("$A$ = {}", amplitude)),
+                   amplitude_look(amplitude, all.size()), &published_nearest(amplitude)});
+  }
+  return all;
 }
 
 Looks::Looks(const Frame& frame, std::vector<StatedLook> stated, std::vector<std::string> shared)

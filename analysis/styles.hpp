@@ -12,6 +12,7 @@
 
 #include "analysis/chart.hpp"
 #include "analysis/frame.hpp"
+#include "analysis/published.hpp"
 
 namespace shearcell {
 
@@ -50,6 +51,17 @@ struct StatedLook {
 /// Colour and symbol of a curve of one amplitude. For the amplitudes of the supplement, they are
 /// the same in all figures. Other amplitudes get the k-th colour and the k-th symbol.
 Look amplitude_look(double amplitude_rad, std::size_t k);
+
+/// The runs of one amplitude. Runs without an amplitude are left out.
+struct AmplitudeRuns {
+  double amplitude;  ///< [rad]
+  std::vector<const FrameRun*> runs;
+  Text title;  ///< "A = 0.05"
+  Look look;
+  const PublishedAmplitude* published;  ///< the nearest amplitude of the supplement
+};
+/// Groups the runs by amplitude, ascending.
+std::vector<AmplitudeRuns> by_amplitude(std::span<const FrameRun> runs);
 
 /// Chooses the colour and symbol (Look) of each variant from the keys that vary in the frame. The
 /// rank of the first key's value decides the colour. The rank of the other values decides the

@@ -8,6 +8,7 @@
 #include <CGAL/Simple_cartesian.h>
 #include <CGAL/Triangulation_cell_base_with_info_3.h>
 #include <CGAL/Triangulation_vertex_base_with_info_3.h>
+#include <fmt/format.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -16,7 +17,6 @@
 #include <compare>
 #include <limits>
 #include <map>
-#include <string>
 #include <utility>
 
 #include "analysis/error.hpp"
@@ -32,8 +32,6 @@ constexpr double first_margin_spacings = 2.1;
 // relative to the larger of 1 d and the radius of the sphere.
 constexpr double worst_centre_error = 1e-12;
 
-constexpr std::array<const char*, 4> side_names = {"left", "right", "bottom", "top"};
-
 /// A site shifted by a whole number of periods in z. Image 0 is the site itself.
 struct SiteImage {
   std::int32_t site;  // -1 for a guard (see Tessellation)
@@ -46,7 +44,7 @@ struct SiteImage {
 struct alignas(64) Tetrahedron {
   std::array<std::int32_t, 4> vertex;     // index of each corner in point_; -1: at infinity
   std::array<std::int32_t, 4> neighbour;  // tetrahedron opposite to each corner
-  Eigen::Vector3d centre;                 // circumcentre, set if a corner is a measured site
+  Eigen::Vector3d centre;                 // circumcentre, set if a corner is a grain
   std::uint8_t beyond;                    // bit w is 1: the centre is on or beyond wall w
   std::uint8_t edges_done;                // a bit for each edge whose face was measured
 };
@@ -62,7 +60,8 @@ std::size_t corner_of(const Tetrahedron& t, std::int32_t vertex) {
          (t.vertex[3] == vertex ? 3U : 0U);
 }
 
-/// Computes the Voronoi cells of the first `measured` sites from a Delaunay triangulation.
+/// Computes the Voronoi cells of the grains, the first `grains` sites, from a Delaunay
+/// triangulation.
 ///
 /// CGAL's predicates are exact. The triangulation is therefore correct for the stored positions,
 /// even if many sites share a plane or a sphere, and no bounded tetrahedron is flat. Circumcentres
@@ -80,12 +79,8 @@ std::size_t corner_of(const Tetrahedron& t, std::int32_t vertex) {
 class Tessellation {
  public:
   Tessellation(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd& sites,
-               std::int32_t grains, std::int32_t measured)
-      : cell_(cell),
-        walls_(wall_planes(cell, pose)),
-        sites_(sites),
-        grains_(grains),
-        measured_(measured) {
+               std::int32_t grains)
+      : cell_(cell), walls_(wall_planes(cell, pose)), sites_(sites), grains_(grains) {
     const double height = pose.top - pose.bottom;
     for (std::int32_t i = 0; i < sites.cols(); ++i) add_point({i, 0});
     const Eigen::Vector3d centre(cell.width / 2, pose.top - height / 2, cell.depth / 2);
@@ -188,15 +183,15 @@ class Tessellation {
 
   [[noreturn]] void throw_same_place(std::int32_t a, std::int32_t b) const {
     const auto name = [&](std::int32_t site) {
-      return site < grains_ ? "grain " + std::to_string(site)
-                            : "wall grain " + std::to_string(site - grains_);
+      return site < grains_ ? fmt::format("grain {}", site)
+                            : fmt::format("wall grain {}", site - grains_);
     };
     const auto [first, second] = std::minmax(image_[static_cast<std::size_t>(a)].site,
                                              image_[static_cast<std::size_t>(b)].site);
-    throw AnalysisError(name(first) + " and " + name(second) + " lie at the same place");
+    throw AnalysisError(fmt::format("{} and {} lie at the same place", name(first), name(second)));
   }
 
-  bool is_measured(std::int32_t vertex) const { return vertex >= 0 && vertex < measured_; }
+  bool is_grain(std::int32_t vertex) const { return vertex >= 0 && vertex < grains_; }
 
   void copy_tetrahedra() {
     std::int32_t count = 0;
@@ -204,16 +199,16 @@ class Tessellation {
     tetrahedra_.resize(static_cast<std::size_t>(count));
     auto copy = tetrahedra_.begin();
     for (const auto cell : triangulation_.all_cell_handles()) {
-      bool any_measured = false;
+      bool any_grain = false;
       for (int k = 0; k < 4; ++k) {
         const std::int32_t vertex = cell->vertex(k)->info().value;
-        any_measured = any_measured || is_measured(vertex);
+        any_grain = any_grain || is_grain(vertex);
         copy->vertex[static_cast<std::size_t>(k)] = vertex;
         copy->neighbour[static_cast<std::size_t>(k)] = cell->neighbor(k)->info().value;
       }
       copy->edges_done = 0;
       copy->beyond = 0;
-      if (any_measured) {
+      if (any_grain) {
         copy->centre = circumcentre(copy->vertex);
         for (std::size_t wall = 0; wall < 4; ++wall) {
           if (!(distance_to(wall, copy->centre) > 0)) {
@@ -227,10 +222,10 @@ class Tessellation {
   }
 
   Eigen::Vector3d circumcentre(std::array<std::int32_t, 4> vertices) const {
-    // A measured site becomes the origin of the edges, so that only edges to guards are long.
-    if (!is_measured(vertices[0])) {
+    // A grain becomes the origin of the edges, so that only edges to guards are long.
+    if (!is_grain(vertices[0])) {
       std::iter_swap(vertices.begin(), std::ranges::find_if(vertices, [&](std::int32_t vertex) {
-                       return is_measured(vertex);
+                       return is_grain(vertex);
                      }));
     }
     const Eigen::Vector3d origin = point(vertices[0]);
@@ -279,14 +274,14 @@ class Tessellation {
   }
 
   void measure_faces() {
-    sides_.assign(static_cast<std::size_t>(measured_), {});
+    sides_.assign(static_cast<std::size_t>(grains_), {});
     for (std::vector<Side>& sides : sides_) sides.reserve(20);  // few grains have more neighbours
-    wall_area_.assign(static_cast<std::size_t>(measured_), {0, 0, 0, 0});
+    wall_area_.assign(static_cast<std::size_t>(grains_), {0, 0, 0, 0});
     for (std::size_t k = 0; k < tetrahedra_.size(); ++k) {
       const Tetrahedron& t = tetrahedra_[k];
       for (const auto [i, j] : edges) {
         if ((t.edges_done & edge_bit[i][j]) != 0) continue;
-        if (is_measured(t.vertex[i]) || is_measured(t.vertex[j])) measure_face(k, i, j);
+        if (is_grain(t.vertex[i]) || is_grain(t.vertex[j])) measure_face(k, i, j);
       }
     }
   }
@@ -313,7 +308,7 @@ class Tessellation {
     const double area = edge.dot(twice) / (2 * length);
     if (area <= smallest_face) return;
     const auto note = [&](std::int32_t from, std::int32_t to) {
-      if (!is_measured(from)) return;
+      if (!is_grain(from)) return;
       sides_[static_cast<std::size_t>(from)].push_back(
           {image_[static_cast<std::size_t>(to)], area});
     };
@@ -356,7 +351,7 @@ class Tessellation {
       const double du = (q.at - p.at).dot(Eigen::Vector3d::UnitZ().cross(outwards(p.wall)));
       const double z = (p.at.z() + q.at.z()) / 2;
       const auto note = [&](std::int32_t from, double area) {
-        if (is_measured(from)) wall_area_[static_cast<std::size_t>(from)][p.wall] += area;
+        if (is_grain(from)) wall_area_[static_cast<std::size_t>(from)][p.wall] += area;
       };
       note(a, (z - point(a).z()) * du);
       note(b, (point(b).z() - z) * du);
@@ -391,49 +386,41 @@ class Tessellation {
         16 * static_cast<std::size_t>(grains_));  // a dense packing has slightly fewer faces
     diagram.first.push_back(0);
     for (std::int32_t i = 0; i < grains_; ++i) {
-      const std::size_t first = diagram.faces.size();
-      diagram.volume.push_back(collect_cell(i, diagram.faces));
-      double surface = 0;
-      for (std::size_t f = first; f < diagram.faces.size(); ++f) surface += diagram.faces[f].area;
+      double volume = 0, surface = 0;
+      const auto add = [&](const VoronoiFace& face, double pyramid) {
+        diagram.faces.push_back(face);
+        volume += pyramid;
+        surface += face.area;
+      };
+      std::vector<Side>& sides = sides_[static_cast<std::size_t>(i)];
+      std::ranges::sort(sides, {}, &Side::to);
+      for (const auto& [to, area] : sides) {
+        const bool grain = to.site < grains_;
+        Eigen::Vector3d offset = sites_.col(to.site) - sites_.col(i);
+        offset.z() += to.image * cell_.depth;
+        add({offset, area, grain ? to.site : to.site - grains_,
+             grain ? NeighbourKind::grain : NeighbourKind::wall_grain},
+            area * offset.norm() / 6);
+      }
+      for (std::size_t wall = 0; wall < 4; ++wall) {
+        const double area = wall_area_[static_cast<std::size_t>(i)][wall];
+        if (area <= smallest_face) continue;
+        const double distance = distance_to(wall, sites_.col(i));
+        add({2 * distance * outwards(wall), area, static_cast<std::int32_t>(wall),
+             NeighbourKind::wall_plane},
+            area * distance / 3);
+      }
+      diagram.volume.push_back(volume);
       diagram.surface.push_back(surface);
       diagram.first.push_back(diagram.faces.size());
     }
-    std::vector<VoronoiFace> unused;
-    for (std::int32_t i = grains_; i < measured_; ++i) {
-      diagram.wall_grain_volume.push_back(collect_cell(i, unused));
-    }
     return diagram;
-  }
-
-  /// Appends the faces of a cell and returns its volume [d^3].
-  double collect_cell(std::int32_t site, std::vector<VoronoiFace>& faces) {
-    double volume = 0;
-    std::vector<Side>& sides = sides_[static_cast<std::size_t>(site)];
-    std::ranges::sort(sides, {}, &Side::to);
-    for (const auto& [to, area] : sides) {
-      const bool grain = to.site < grains_;
-      Eigen::Vector3d offset = sites_.col(to.site) - sites_.col(site);
-      offset.z() += to.image * cell_.depth;
-      volume += area * offset.norm() / 6;
-      faces.push_back({offset, area, grain ? to.site : to.site - grains_,
-                       grain ? NeighbourKind::grain : NeighbourKind::wall_grain});
-    }
-    for (std::size_t wall = 0; wall < 4; ++wall) {
-      const double area = wall_area_[static_cast<std::size_t>(site)][wall];
-      if (area <= smallest_face) continue;
-      const double distance = distance_to(wall, sites_.col(site));
-      volume += area * distance / 3;
-      faces.push_back({2 * distance * outwards(wall), area, static_cast<std::int32_t>(wall),
-                       NeighbourKind::wall_plane});
-    }
-    return volume;
   }
 
   const Cell& cell_;
   std::array<WallPlane, 4> walls_;
   const Eigen::Matrix3Xd& sites_;
   std::int32_t grains_;
-  std::int32_t measured_;
   double margin_ = 0;
   Triangulation triangulation_;
   // One entry per vertex: first the sites, then the guards, then the images.
@@ -442,8 +429,8 @@ class Tessellation {
   std::size_t inserted_ = 0;  // number of points in the triangulation
   std::vector<Tetrahedron> tetrahedra_;
   double reach_ = 0;  // see note_reach(): how far the spheres extend in z beyond [0, depth] [d]
-  std::vector<std::vector<Side>> sides_;          // by measured site
-  std::vector<std::array<double, 4>> wall_area_;  // by measured site and wall
+  std::vector<std::vector<Side>> sides_;          // by grain
+  std::vector<std::array<double, 4>> wall_area_;  // by grain and wall
   std::vector<Corner> polygon_;                   // current face
   std::vector<Corner> clipped_;
 };
@@ -451,15 +438,14 @@ class Tessellation {
 void require_inside(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd& grains) {
   for (Eigen::Index i = 0; i < grains.cols(); ++i) {
     if (!grains.col(i).allFinite()) {
-      throw AnalysisError("grain " + std::to_string(i) + " has no finite position");
+      throw AnalysisError(fmt::format("grain {} has no finite position", i));
     }
     const Eigen::Vector4d distance = wall_distances(cell, pose, grains.col(i));
     Eigen::Index side = 0;
     const double least = distance.minCoeff(&side);
     if (least <= 0) {
-      throw AnalysisError("grain " + std::to_string(i) +
-                          " lies outside the cell: " + std::to_string(-least) + " d beyond the " +
-                          side_names[static_cast<std::size_t>(side)] + " wall");
+      throw AnalysisError(fmt::format("grain {} lies outside the cell: {:f} d beyond the {} wall",
+                                      i, -least, name_of(static_cast<WallSide>(side))));
     }
   }
 }
@@ -485,18 +471,14 @@ Eigen::Matrix3Xd wrapped_sites(const Cell& cell, const WallPose& pose,
   return sites;
 }
 
-VoronoiDiagram voronoi(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd& grains,
-                       WallGrainCells wall_grain_cells) {
+VoronoiDiagram voronoi(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd& grains) {
   if (!(cell.width > 0 && cell.depth > 0 && pose.top > pose.bottom)) {
     throw AnalysisError("the cell has no volume");
   }
   require_inside(cell, pose, grains);
   const Eigen::Matrix3Xd sites = wrapped_sites(cell, pose, grains);
   if (!sites.allFinite()) throw AnalysisError("a wall grain has no finite position");
-  const auto measured = wall_grain_cells == WallGrainCells::measure ? sites.cols() : grains.cols();
-  return Tessellation(cell, pose, sites, static_cast<std::int32_t>(grains.cols()),
-                      static_cast<std::int32_t>(measured))
-      .measure();
+  return Tessellation(cell, pose, sites, static_cast<std::int32_t>(grains.cols())).measure();
 }
 
 }  // namespace shearcell

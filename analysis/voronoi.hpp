@@ -29,19 +29,15 @@ struct VoronoiDiagram {
   std::vector<double> surface;     ///< A_i, the area of all faces, also on wall planes [d^2]
   std::vector<std::size_t> first;  ///< n + 1 entries: grain i has faces first[i] to first[i+1] - 1
   std::vector<VoronoiFace> faces;
-  /// Volumes of the cells of wall grains, only inside the walls [d^3]. WallGrainCells::skip: empty.
-  std::vector<double> wall_grain_volume;
 
   std::span<const VoronoiFace> faces_of(std::size_t grain) const {
     return {faces.data() + first[grain], first[grain + 1] - first[grain]};
   }
 };
 
-enum class WallGrainCells : std::uint8_t { skip, measure };
-
 /// Computes the cells of `grains` (3 x n [d], z unwrapped and periodic with cell.depth) inside the
-/// walls at `pose`. With WallGrainCells::measure the volumes of all cells add up to the volume of
-/// the sheared box.
+/// walls at `pose`. Wall grains have cells, too, which are not returned. Without wall grains, the
+/// volumes of the cells add up to the volume of the sheared box.
 ///
 /// The cells are dual to CGAL's Delaunay triangulation of the sites and their periodic images:
 /// faces are polygons of circumcentres, clipped by the walls. The faces of a grain are in ascending
@@ -49,8 +45,7 @@ enum class WallGrainCells : std::uint8_t { skip, measure };
 ///
 /// Throws AnalysisError, with the numbers of the grains, if two sites coincide or a grain is on or
 /// outside a wall plane; also if a position is not finite or the cell has no volume.
-VoronoiDiagram voronoi(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd& grains,
-                       WallGrainCells wall_grain_cells = WallGrainCells::skip);
+VoronoiDiagram voronoi(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd& grains);
 
 /// Sites for neighbour searches: grains, then wall grains, with z wrapped into one period.
 Eigen::Matrix3Xd wrapped_sites(const Cell& cell, const WallPose& pose,

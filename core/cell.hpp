@@ -15,6 +15,8 @@ enum class WallSide : std::uint8_t { left = 0, right = 1, bottom = 2, top = 3 };
 enum class WallTexture : std::uint8_t { rough, smooth };
 enum class MovingWall : std::uint8_t { bottom, top };
 template <>
+inline constexpr auto kNames<WallSide> = names_in_order<WallSide>("left", "right", "bottom", "top");
+template <>
 inline constexpr auto kNames<WallTexture> = names_in_order<WallTexture>("rough", "smooth");
 template <>
 inline constexpr auto kNames<MovingWall> = names_in_order<MovingWall>("bottom", "top");

@@ -5,10 +5,36 @@
 #include <cmath>
 #include <map>
 
-#include "analysis/binning.hpp"
 #include "analysis/estimators.hpp"
 
 namespace shearcell {
+namespace {
+
+/// Means over the checkpoints of one run in one bin of phi.
+struct PhiMean {
+  double phi, value;
+};
+
+/// Means of the column in each bin of phi, in ascending order. Checkpoints without a finite phi and
+/// bins without a finite value are left out.
+std::vector<PhiMean> means_over_phi(const FrameRun& run, const NumberColumn& column) {
+  std::map<double, std::pair<std::vector<double>, std::vector<double>>> bins;
+  for (const CheckpointMeasures& checkpoint : run.checkpoints) {
+    const double phi = checkpoint.measures.number("phi");
+    if (!std::isfinite(phi)) continue;
+    auto& [phis, values] = bins[std::floor(phi / phi_bin)];
+    phis.push_back(phi);
+    values.push_back(column(run, &checkpoint));
+  }
+  std::vector<PhiMean> means;
+  for (const auto& [bin, members] : bins) {
+    const auto value = over_runs(members.second).mean;
+    if (value) means.push_back({over_runs(members.first).mean.value(), *value});
+  }
+  return means;
+}
+
+}  // namespace
 
 Scalar over_phi(const std::string& name, const std::string& column, double low, double high) {
   const auto of = [low, high, number = NumberColumn(column)](const FrameRun& run) -> RunValue {

@@ -12,10 +12,8 @@
 
 #include "analysis/axes.hpp"
 #include "analysis/estimators.hpp"
-#include "analysis/figures/figures.hpp"
 #include "analysis/growth.hpp"
 #include "analysis/plots.hpp"
-#include "analysis/published.hpp"
 #include "analysis/styles.hpp"
 
 namespace shearcell {
@@ -60,50 +58,27 @@ std::optional<Estimate> critical_size_without(std::size_t GrowthCount::*fate,
 
 /// Growth of the crystallites over a fixed number of cycles.
 struct GrowthAfter {
-  std::vector<GrowthBySize> runs;  ///< counts of each packing
-  std::optional<Estimate> critical;
+  std::vector<GrowthBySize> runs = {};  ///< counts of each packing
+  GrowthCurve curve{runs};
+  std::optional<Estimate> critical = curve.critical_size();
 };
 
-struct AmplitudeGrowth {
-  Text title;
-  Look look;
-  double amplitude;
-  const PublishedAmplitude* published;
-  std::vector<const FrameRun*> all_runs;
-  std::map<std::int64_t, GrowthAfter> after;  ///< by number of cycles (cycles_to_follow())
-  std::optional<double> onset_cycle;          ///< median over runs
-  GrowthCurve curve;
-  std::optional<Estimate> without_absorbed;
-  std::optional<Estimate> without_vanished;
-  Interval repeated;  ///< critical size in 90 % of repeated studies with published_runs runs
+struct AmplitudeGrowth : AmplitudeRuns {
+  std::map<std::int64_t, GrowthAfter> after = {};  ///< by number of cycles (cycles_to_follow())
 
   /// Growth over n_bin cycles, the time for which the supplement follows a crystallite.
   const GrowthAfter& published_bin() const { return after.at(published->n_bin); }
+  /// Median over runs.
+  std::optional<double> onset_cycle() const { return median_wait(waits_for_onset(runs)); }
 };
 
 std::vector<AmplitudeGrowth> growth_by_amplitude(std::span<const FrameRun> runs) {
   std::vector<AmplitudeGrowth> all;
-  for (const auto& [amplitude, members] : runs_by(runs, "amplitude_rad")) {
-    const PublishedAmplitude& published = published_nearest(amplitude);
-    std::map<std::int64_t, GrowthAfter> after;
+  for (const AmplitudeRuns& amplitude : by_amplitude(runs)) {
+    AmplitudeGrowth& one = all.emplace_back(AmplitudeGrowth{amplitude});
     for (const std::int64_t cycles : cycles_to_follow()) {
-      const std::vector<GrowthBySize> counts = followed(members, cycles);
-      after[cycles] = {counts, GrowthCurve(counts).critical_size()};
+      one.after.emplace(cycles, GrowthAfter{followed(one.runs, cycles)});
     }
-    const std::vector<GrowthBySize>& counts = after.at(published.n_bin).runs;
-    const GrowthCurve curve(counts);
-    const std::size_t k = all.size();
-    all.push_back({.title = formula(fmt::format("$A$ = {}", amplitude)),
-                   .look = amplitude_look(amplitude, k),
-                   .amplitude = amplitude,
-                   .published = &published,
-                   .all_runs = members,
-                   .after = after,
-                   .onset_cycle = median_wait(waits_for_onset(members)),
-                   .curve = curve,
-                   .without_absorbed = critical_size_without(&GrowthCount::absorbed, counts),
-                   .without_vanished = critical_size_without(&GrowthCount::vanished, counts),
-                   .repeated = curve.repeated_critical_size(published_runs)});
   }
   return all;
 }
@@ -115,8 +90,8 @@ std::vector<ChartPoint> smooth_points(const AmplitudeGrowth& one) {
   std::vector<ChartPoint> points;
   for (std::int32_t size = 1; size <= 60; size += size < 10 ? 1 : 5) {
     points.push_back({.x = static_cast<double>(size),
-                      .y = one.curve.delta_rho(size),
-                      .y_error = one.curve.delta_rho_error(size)});
+                      .y = one.published_bin().curve.delta_rho(size),
+                      .y_error = one.published_bin().curve.delta_rho_error(size)});
   }
   return points;
 }
@@ -172,13 +147,15 @@ Table critical_table(std::span<const AmplitudeGrowth> all) {
                                              "supplement_grains", "runs"});
   for (const AmplitudeGrowth& one : all) {
     TableRow& row =
-        table.rows.emplace_back(TableRow{one.amplitude, one.published->n_bin, one.onset_cycle});
-    for (const auto& size : {one.published_bin().critical, one.curve.monotone_critical_size(),
-                             one.without_absorbed, one.without_vanished}) {
+        table.rows.emplace_back(TableRow{one.amplitude, one.published->n_bin, one.onset_cycle()});
+    const auto& [counts, curve, critical] = one.published_bin();
+    for (const auto& size : {critical, curve.monotone_critical_size(),
+                             critical_size_without(&GrowthCount::absorbed, counts),
+                             critical_size_without(&GrowthCount::vanished, counts)}) {
       add_size(size, row);
     }
-    row.insert(row.end(), {one.repeated.low, one.repeated.high, one.published->critical_size,
-                           one.published_bin().runs.size()});
+    const auto [low, high] = curve.repeated_critical_size(published_runs);
+    row.insert(row.end(), {low, high, one.published->critical_size, counts.size()});
   }
   table.chart = {.x = amplitude_axis,
                  .y = {.name = "critical size", .unit = "grains", .low = 0},
@@ -258,18 +235,15 @@ Table largest_table(const Frame& frame, std::span<const AmplitudeGrowth> all) {
 }
 
 /// For each run, the counts from which the critical size is computed.
-Table growth_entered(std::span<const AmplitudeGrowth* const> amplitudes, std::int64_t cycles) {
+Table growth_entered(RunGroup runs, std::int64_t cycles) {
   Table entered =
       entered_with({"cycles_followed", "size", "grew", "absorbed", "shrank", "vanished"});
-  for (const AmplitudeGrowth* one : amplitudes) {
-    for (const FrameRun* run : one->all_runs) {
-      for (const auto& [size, count] : growth_of(*run, cycles)) {
-        if (size > GrowthCurve::largest) break;
-        enter(
-            *run,
+  for (const FrameRun* run : runs) {
+    for (const auto& [size, count] : growth_of(*run, cycles)) {
+      if (size > GrowthCurve::largest) break;
+      enter(*run,
             {cycles, std::int64_t{size}, count.grew, count.absorbed, count.shrank, count.vanished},
             entered);
-      }
     }
   }
   return entered;
@@ -286,17 +260,19 @@ std::string in_grains(const std::optional<Estimate>& size) {
 /// The supplement's critical size comes from few runs. Its error is assumed to be the error that
 /// our critical size would have with published_runs runs.
 Verdict critical_size_is_published(const AmplitudeGrowth& one) {
-  const auto& [runs, critical] = one.published_bin();
+  const auto& [counts, curve, critical] = one.published_bin();
   const double published = one.published->critical_size;
-  const auto [low, high] = one.repeated;
+  const auto [low, high] = curve.repeated_critical_size(published_runs);
   std::string note = fmt::format("crystallites followed over {} cycles in {} of {} runs",
-                                 one.published->n_bin, runs.size(), one.all_runs.size());
-  if (one.onset_cycle) note += fmt::format(", onset at cycle {:.3g} (median)", *one.onset_cycle);
+                                 one.published->n_bin, counts.size(), one.runs.size());
+  if (const auto onset = one.onset_cycle()) {
+    note += fmt::format(", onset at cycle {:.3g} (median)", *onset);
+  }
   std::optional<Estimate> relative;
   if (critical) {
     const double size = critical->value;
     note += fmt::format("; critical size {:.3g} grains, or {} by a monotone fit of delta_rho", size,
-                        in_grains(one.curve.monotone_critical_size()));
+                        in_grains(curve.monotone_critical_size()));
     note += fmt::format("; 90 % of repeated studies with {} runs would give {} to {}",
                         published_runs, in_grains(low), in_grains(high));
     relative = ratio(*critical, {.value = published,
@@ -304,21 +280,21 @@ Verdict critical_size_is_published(const AmplitudeGrowth& one) {
                                  .runs = critical->runs});
     relative = mapped(*relative, [](double ratio) { return ratio - 1; });
   } else {
-    note +=
-        runs.size() < least_bootstrap_runs ? "; too few runs" : "; no size at which growth begins";
+    note += counts.size() < least_bootstrap_runs ? "; too few runs"
+                                                 : "; no size at which growth begins";
   }
   GrowthCount all;
-  for (const GrowthBySize& run : runs) {
-    for (const auto& [size, count] : run) {
+  for (const GrowthBySize& of_packing : counts) {
+    for (const auto& [size, count] : of_packing) {
       if (size <= GrowthCurve::largest) all += count;
     }
   }
   note += fmt::format(
       "; critical size {} if absorbed crystallites ({} of {} that grow) are left out, and {} if "
       "vanished crystallites ({} of {} that shrink) are left out",
-      in_grains(one.without_absorbed), all.absorbed, all.larger(), in_grains(one.without_vanished),
-      all.vanished, all.smaller());
-  const AmplitudeGrowth* const alone = &one;
+      in_grains(critical_size_without(&GrowthCount::absorbed, counts)), all.absorbed, all.larger(),
+      in_grains(critical_size_without(&GrowthCount::vanished, counts)), all.vanished,
+      all.smaller());
   Verdict verdict =
       decide({.text = fmt::format("C: the critical size at A = {} rad is about {} grains",
                                   one.amplitude, published),
@@ -326,7 +302,7 @@ Verdict critical_size_is_published(const AmplitudeGrowth& one) {
               .id = fmt::format("C.critical_size@amplitude_rad={}", one.amplitude),
               .cannot_be_decided = one.published->cannot_be_decided},
              fmt::format("critical size, relative difference from {} grains", published), relative,
-             runs.size(), note, growth_entered({&alone, 1}, one.published->n_bin));
+             counts.size(), note, growth_entered(one.runs, one.published->n_bin));
   if (critical && !(low > 0 && high / low <= 1 + 2 * margin_critical_size)) {
     verdict.runs_needed.reset();  // the supplement's error alone exceeds the margin
   }
@@ -344,19 +320,23 @@ Verdict critical_size_grows(std::span<const AmplitudeGrowth> all) {
     if (size) sized.push_back(&one);
   }
   std::optional<Estimate> growth;
+  std::vector<const FrameRun*> compared;
   if (sized.size() > 1) {
-    sized = {sized.front(), sized.back()};
-    const auto size = [&](std::size_t k) { return *sized[k]->after.at(cycles_compared).critical; };
-    growth = mapped(ratio(size(1), size(0)), [](double r) { return r - 1; });
+    const AmplitudeGrowth &low = *sized.front(), &high = *sized.back();
+    const auto size = [](const AmplitudeGrowth& one) {
+      return *one.after.at(cycles_compared).critical;
+    };
+    growth = mapped(ratio(size(high), size(low)), [](double r) { return r - 1; });
+    compared = low.runs;
+    compared.insert(compared.end(), high.runs.begin(), high.runs.end());
   }
-  if (!growth) sized.clear();
   return decide({.text = "C: the critical size grows with A",
                  .claimed = Relation::higher,
                  .id = "C.growth",
                  .cannot_be_decided = growth_cannot_be_decided},
                 "critical size at the largest amplitude divided by that at the smallest, "
                 "minus 1",
-                growth, growth ? growth->runs : 0, note, growth_entered(sized, cycles_compared),
+                growth, growth ? growth->runs : 0, note, growth_entered(compared, cycles_compared),
                 Counted::runs_per_variant);
 }
 

@@ -12,9 +12,7 @@
 #include "analysis/axes.hpp"
 #include "analysis/committor.hpp"
 #include "analysis/estimators.hpp"
-#include "analysis/figures/figures.hpp"
 #include "analysis/growth.hpp"
-#include "analysis/published.hpp"
 #include "analysis/styles.hpp"
 #include "provenance/words.hpp"
 
@@ -29,22 +27,21 @@ constexpr std::size_t chosen_rule = 1;  ///< index of cycles_gone
 /// only if the smallest crystallites grow more often than the controls. [choice]
 constexpr double rare = 0.1;
 
-/// For each outcome (Fate) of a crystallite, the number of clones.
+/// Number of clones with each outcome of a crystallite, in the order of Fate. The last number
+/// counts the clones with fate `gone` in which a descendant grew later ("revived").
 struct Fates {
-  std::array<std::size_t, 4> clones = {};  ///< indexed by Fate
-  std::size_t revived = 0;  ///< clones with fate `gone` in which a descendant grew later
+  Eigen::Array<std::size_t, 5, 1> clones = Eigen::Array<std::size_t, 5, 1>::Zero();
 
-  std::size_t of(Fate fate) const { return clones[static_cast<std::size_t>(fate)]; }
+  std::size_t of(Fate fate) const { return clones[static_cast<Eigen::Index>(fate)]; }
   void add(const Ending& end) {
-    ++clones[static_cast<std::size_t>(end.fate)];
-    revived += end.revived ? 1 : 0;
-  }
-  Fates& operator+=(const Fates& other) {
-    for (std::size_t k = 0; k < clones.size(); ++k) clones[k] += other.clones[k];
-    revived += other.revived;
-    return *this;
+    ++clones[static_cast<Eigen::Index>(end.fate)];
+    clones[4] += end.revived ? 1 : 0;
   }
 };
+void add_fates(const Fates& fates, TableRow& row) {
+  row.insert(row.end(), fates.clones.begin(), fates.clones.end());
+}
+const std::array fate_columns = {"grown", "gone", "merged", "undecided", "revived"};
 
 /// The outcomes for each element of cycles_without.
 using FatesByRule = std::array<Fates, cycles_without.size()>;
@@ -57,11 +54,7 @@ struct Subject {
   FatesByRule fates = {};
 };
 
-struct Amplitude {
-  double amplitude = 0;
-  Text title;
-  Look look;
-  double published = 0;  ///< the supplement's critical size
+struct Amplitude : AmplitudeRuns {
   std::vector<Subject> crystallites = {}, controls = {};
   std::size_t states = 0;
   std::size_t left_out = 0;  ///< unused states: a crystallite already has grown_size grains
@@ -78,10 +71,6 @@ std::vector<const CrystalliteMap*> maps_of(const FrameRun& run) {
   return maps;
 }
 
-std::int32_t largest_in(const CrystalliteMap& map) {
-  return map.size.empty() ? 0 : std::ranges::max(map.size);
-}
-
 /// Adds each crystallite of a state, or one control, with its outcomes in the clones of the state.
 void add_state(RunGroup clones, Amplitude& to) {
   std::vector<std::vector<const CrystalliteMap*>> maps;  // of each clone
@@ -89,16 +78,16 @@ void add_state(RunGroup clones, Amplitude& to) {
   std::erase_if(maps, [](const auto& of_clone) { return of_clone.empty(); });
   if (maps.empty()) return;
   const CrystalliteMap& start = *maps.front().front();
-  if (largest_in(start) >= grown_size) {
+  if (start.largest() >= grown_size) {
     ++to.left_out;
     return;
   }
   ++to.states;
-  if (largest_in(start) < least_descendant) {
+  if (start.largest() < least_descendant) {
     Subject& control = to.controls.emplace_back(Subject{clones.front(), 0});
     for (const auto& of_clone : maps) {
       const bool grew = std::ranges::any_of(
-          of_clone, [](const auto* map) { return largest_in(*map) >= grown_size; });
+          of_clone, [](const auto* map) { return map->largest() >= grown_size; });
       for (Fates& fates : control.fates) fates.add({grew ? Fate::grown : Fate::gone});
     }
   }
@@ -116,16 +105,12 @@ void add_state(RunGroup clones, Amplitude& to) {
 
 std::vector<Amplitude> amplitudes_of(std::span<const FrameRun> runs) {
   std::vector<Amplitude> all;
-  for (const auto& [amplitude, members] : runs_by(runs, "amplitude_rad")) {
-    const std::size_t k = all.size();
-    Amplitude& one =
-        all.emplace_back(Amplitude{.amplitude = amplitude,
-                                   .title = formula(fmt::format("$A$ = {}", amplitude)),
-                                   .look = amplitude_look(amplitude, k),
-                                   .published = published_nearest(amplitude).critical_size});
+  for (const AmplitudeRuns& amplitude : by_amplitude(runs)) {
+    Amplitude& one = all.emplace_back(Amplitude{amplitude});
     std::map<std::pair<std::string, std::string>, std::vector<const FrameRun*>> states;
-    for (const FrameRun* run : members)
+    for (const FrameRun* run : one.runs) {
       states[{run->place.variant, run->stage.parent}].push_back(run);
+    }
     for (const auto& [state, clones] : states) add_state(clones, one);
   }
   return all;
@@ -136,7 +121,7 @@ Fates sum_of(std::span<const Subject> subjects, std::size_t rule, std::int32_t l
              std::int32_t high = grown_size) {
   Fates sum;
   for (const Subject& one : subjects) {
-    if (one.size >= low && one.size < high) sum += one.fates[rule];
+    if (one.size >= low && one.size < high) sum.clones += one.fates[rule].clones;
   }
   return sum;
 }
@@ -196,9 +181,9 @@ std::optional<Estimate> half_size(const Amplitude& one, std::size_t rule) {
 constexpr std::size_t least_drawn = 8;
 
 Table probability_table(std::span<const Amplitude> all) {
-  Table table{.name = "committor",
-              .columns = {"amplitude_rad", "size_grains", "crystallites", "grown", "gone", "merged",
-                          "undecided", "revived", "grown_share"}};
+  Table table{.name = "committor", .columns = {"amplitude_rad", "size_grains", "crystallites"}};
+  table.columns.insert(table.columns.end(), fate_columns.begin(), fate_columns.end());
+  table.columns.emplace_back("grown_share");
   table.chart = {
       .x = {.name = "crystallite size", .unit = "grains", .low = 0, .high = 21},
       .y = {.name = "share that grows", .low = 0, .high = 1, .clip = true},
@@ -210,16 +195,16 @@ Table probability_table(std::span<const Amplitude> all) {
     for (const Subject& subject : one.crystallites) {
       auto& [count, fates] = sizes[subject.size];
       ++count;
-      fates += subject.fates[chosen_rule];
+      fates.clones += subject.fates[chosen_rule].clones;
     }
     const std::vector<GrowthBySize> growth = by_packing_and_size(one, chosen_rule);
     const GrowthCurve curve(growth);
     Series smooth{.colour = one.look.colour, .point = 0, .join = Join::line, .band = true};
     for (const auto& [size, entry] : sizes) {
       const auto& [count, fates] = entry;
-      table.rows.push_back({one.amplitude, std::int64_t{size}, count, fates.of(Fate::grown),
-                            fates.of(Fate::gone), fates.of(Fate::merged), fates.of(Fate::undecided),
-                            fates.revived, grown_share(fates)});
+      TableRow& row = table.rows.emplace_back(TableRow{one.amplitude, std::int64_t{size}, count});
+      add_fates(fates, row);
+      row.push_back(grown_share(fates));
       ChartPoint& at = smooth.points.emplace_back(
           ChartPoint{static_cast<double>(size), (1 + curve.delta_rho(size)) / 2});
       if (const auto error = curve.delta_rho_error(size)) at.y_error = *error / 2;
@@ -240,12 +225,12 @@ Table probability_table(std::span<const Amplitude> all) {
 Table sizes_table(std::span<const Amplitude> all) {
   Table table{.name = "committor_sizes", .columns = {"amplitude_rad", "cycles_without"}};
   add_size_columns("half_size", table.columns);
-  for (const char* name :
-       {"not_corrected_grains", "undecided_as_grown_grains", "undecided_as_gone_grains", "states",
-        "states_left_out", "packings", "crystallites", "grown", "gone", "merged", "undecided",
-        "revived", "control_states", "control_share", "supplement_grains"}) {
-    table.columns.emplace_back(name);
-  }
+  auto& columns = table.columns;
+  columns.insert(columns.end(),
+                 {"not_corrected_grains", "undecided_as_grown_grains", "undecided_as_gone_grains",
+                  "states", "states_left_out", "packings", "crystallites"});
+  columns.insert(columns.end(), fate_columns.begin(), fate_columns.end());
+  columns.insert(columns.end(), {"control_states", "control_share", "supplement_grains"});
   table.chart = {
       .x = {.name = "cycles without a descendant", .whole = true, .low = 0.5, .high = 3.5},
       .y = {.name = "crystallite size at which half grow", .unit = "grains", .low = 0, .high = 25}};
@@ -257,11 +242,10 @@ Table sizes_table(std::span<const Amplitude> all) {
         const auto size = GrowthCurve(by_packing_and_size(one, rule, undecided)).critical_size();
         row.push_back(size ? TableCell(size->value) : TableCell());
       }
-      const Fates sum = sum_of(one.crystallites, rule);
       row.insert(row.end(), {one.states, one.left_out, by_packing_and_size(one, rule).size(),
-                             one.crystallites.size(), sum.of(Fate::grown), sum.of(Fate::gone),
-                             sum.of(Fate::merged), sum.of(Fate::undecided), sum.revived,
-                             one.controls.size(), background(one), one.published});
+                             one.crystallites.size()});
+      add_fates(sum_of(one.crystallites, rule), row);
+      row.insert(row.end(), {one.controls.size(), background(one), one.published->critical_size});
     }
     table.chart.series.push_back({.title = one.title,
                                   .colour = one.look.colour,
@@ -272,25 +256,22 @@ Table sizes_table(std::span<const Amplitude> all) {
                                               .y_error = "half_size_standard_error_grains"},
                                   .filter = {"amplitude_rad", one.amplitude},
                                   .shift = 0.04 * static_cast<double>(table.chart.series.size())});
-    table.chart.lines.push_back(critical_line(one.published, one.look.colour));
+    table.chart.lines.push_back(critical_line(one.published->critical_size, one.look.colour));
   }
   return table;
 }
 
 /// The data of a verdict: one row for each crystallite or control, and each of cycles_without.
 Table fates_of(std::initializer_list<const Amplitude*> amplitudes) {
-  Table entered =
-      entered_with({"size", "cycles_without", "grown", "gone", "merged", "undecided", "revived"});
+  Table entered = entered_with({"size", "cycles_without"});
+  entered.columns.insert(entered.columns.end(), fate_columns.begin(), fate_columns.end());
   for (const Amplitude* one : amplitudes) {
     for (const auto* subjects : {&one->crystallites, &one->controls}) {
       for (const Subject& subject : *subjects) {
         for (std::size_t rule = 0; rule < cycles_without.size(); ++rule) {
-          const Fates& fates = subject.fates[rule];
-          enter(*subject.run,
-                {std::int64_t{subject.size}, cycles_without[rule], fates.of(Fate::grown),
-                 fates.of(Fate::gone), fates.of(Fate::merged), fates.of(Fate::undecided),
-                 fates.revived},
-                entered);
+          TableRow row = {std::int64_t{subject.size}, cycles_without[rule]};
+          add_fates(subject.fates[rule], row);
+          enter(*subject.run, row, entered);
         }
       }
     }
@@ -312,15 +293,16 @@ Verdict size_is_published(const Amplitude& one) {
       "{} and {} in {}; left out: {} with an initial crystallite of {} grains or more; {}",
       counted(one.crystallites.size(), "crystallite"), counted(one.controls.size(), "control"),
       counted(packings, "packing"), counted(one.left_out, "state"), grown_size, note_on(one, size));
-  if (size) size = mapped(*size, [&](double grains) { return grains / one.published - 1; });
-  if (size) size->spread /= one.published;
+  const double published = one.published->critical_size;
+  if (size) size = mapped(*size, [&](double grains) { return grains / published - 1; });
+  if (size) size->spread /= published;
   return decide(
       {fmt::format("C: at A = {} rad half of the crystallites of {} grains grow", one.amplitude,
-                   one.published),
+                   published),
        margin_critical_size, Relation::same,
        fmt::format("committor.size@amplitude_rad={}", one.amplitude)},
-      fmt::format("size at which 50 % grow, relative difference from {} grains", one.published),
-      size, packings, note, fates_of({&one}));
+      fmt::format("size at which 50 % grow, relative difference from {} grains", published), size,
+      packings, note, fates_of({&one}));
 }
 
 /// Decides whether the critical size grows with the amplitude, as in the supplement. Clones at

@@ -10,9 +10,7 @@
 #include <utility>
 
 #include "analysis/axes.hpp"
-#include "analysis/binning.hpp"
 #include "analysis/estimators.hpp"
-#include "analysis/figures/figures.hpp"
 #include "analysis/nucleation.hpp"
 #include "analysis/statistics.hpp"
 #include "analysis/styles.hpp"

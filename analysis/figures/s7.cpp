@@ -8,9 +8,10 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <ranges>
 
 #include "analysis/estimators.hpp"
-#include "analysis/figures/figures.hpp"
+#include "analysis/figure.hpp"
 #include "analysis/nucleation.hpp"
 #include "analysis/published.hpp"
 #include "analysis/statistics.hpp"
@@ -30,18 +31,18 @@ struct Places {
   std::size_t count = 0;                      ///< number of nuclei in all packings
 };
 
-Places places_of(RunGroup runs, CellAxis axis, Seen seen = Seen::always) {
+Places places_of(RunGroup runs, CellAxis axis) {
   Places places;
-  std::map<std::string, std::vector<double>> of_packing;
+  std::map<std::string, std::vector<double>> packings;
   for (const FrameRun* run : runs) {
-    const std::vector<double> found = nucleus_places(*run, axis, seen);
+    const std::vector<double> found = nucleus_places(*run, axis);
     if (found.empty()) continue;
     places.count += found.size();
     ++places.runs;
-    std::vector<double>& all = of_packing[packing_of(*run)];
+    std::vector<double>& all = packings[packing_of(*run)];
     all.insert(all.end(), found.begin(), found.end());
   }
-  for (auto& [packing, all] : of_packing) places.packings.push_back(std::move(all));
+  for (auto& [packing, all] : packings) places.packings.push_back(std::move(all));
   return places;
 }
 
@@ -96,35 +97,34 @@ Table density_table(std::string name, std::string first_column, Text x,
 /// which it returns nothing is left out. The bootstrap resamples packings, each with all its runs.
 Verdict share_verdict(const Claim& claim, std::string quantity, RunGroup runs, CellAxis axis,
                       const std::function<std::optional<int>(double place)>& side) {
-  const Places places = places_of(runs, axis, Seen::first);
-  std::vector<std::vector<double>> sides;  // of each packing
-  for (const std::vector<double>& packing : places.packings) {
-    std::vector<double> own;
-    for (const double place : packing) {
-      if (const std::optional<int> counted = side(place)) own.push_back(*counted);
-    }
-    sides.push_back(std::move(own));
-  }
-  const std::size_t packings = places.packings.size();
-  std::string note = fmt::format("{} nuclei of {} to {} grains in {} of {} runs", places.count,
-                                 nucleus_smallest, nucleus_largest, places.runs, runs.size());
-  if (packings < places.runs) {
-    note += fmt::format("; {}, and nuclei of all runs of one packing are pooled",
-                        counted(packings, "packing"));
-  }
-  if (packings < least_bootstrap_runs) {
-    note += fmt::format("; too few; at least {} are needed", least_bootstrap_runs);
-  }
+  std::map<std::string, std::vector<double>> packings;
+  std::size_t nuclei = 0, with_nuclei = 0;
   Table entered = entered_with({"place", "value"});
   for (const FrameRun* run : runs) {
-    for (const double place : nucleus_places(*run, axis, Seen::first)) {
+    const std::vector<double> places = nucleus_places(*run, axis, Seen::first);
+    if (places.empty()) continue;
+    nuclei += places.size();
+    ++with_nuclei;
+    std::vector<double>& sides = packings[packing_of(*run)];
+    for (const double place : places) {
       const std::optional<int> counted = side(place);
       if (!counted) continue;
+      sides.push_back(*counted);
       enter(*run, {place, std::int64_t{*counted}}, entered);
     }
   }
-  return decide(claim, std::move(quantity), share(sides), packings, std::move(note),
-                std::move(entered));
+  std::string note = fmt::format("{} nuclei of {} to {} grains in {} of {} runs", nuclei,
+                                 nucleus_smallest, nucleus_largest, with_nuclei, runs.size());
+  if (packings.size() < with_nuclei) {
+    note += fmt::format("; {}, and nuclei of all runs of one packing are pooled",
+                        counted(packings.size(), "packing"));
+  }
+  if (packings.size() < least_bootstrap_runs) {
+    note += fmt::format("; too few; at least {} are needed", least_bootstrap_runs);
+  }
+  const auto sides = std::views::values(packings);
+  return decide(claim, std::move(quantity), share(std::vector(sides.begin(), sides.end())),
+                packings.size(), std::move(note), std::move(entered));
 }
 
 /// Compares the inner half of the accessible width with the outer half.

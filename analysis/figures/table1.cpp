@@ -10,41 +10,32 @@
 #include <string_view>
 
 #include "analysis/expression.hpp"
-#include "analysis/figures/figures.hpp"
+#include "analysis/figure.hpp"
 #include "analysis/plots.hpp"
-#include "analysis/published.hpp"
 
 namespace shearcell {
 namespace {
 
-/// A row of Table I, or the time step, which follows from two rows.
-struct Parameter {
-  const char* name;  ///< name of the parameter; ends in the unit
-  Text symbol;
-  const char* unit;
-  double published;
-  std::string value;  ///< expression of manifest keys; it varies if one of these keys is swept
-};
-
 constexpr double pi = std::numbers::pi;
 
-const std::vector<Parameter>& parameters() {
-  constexpr double published_time_step = published_period_s / published_steps_per_cycle;
-  const auto plain = [](const char* name, const char* symbol, const char* unit, double published) {
-    return Parameter{name, formula(fmt::format("${}$", symbol)), unit, published, name};
-  };
-  static const std::vector<Parameter> all = {
-      plain("mass_kg", "m", "kg", published_mass_kg),
-      plain("diameter_m", "d", "m", published_diameter_m),
-      plain("stiffness_N_per_m", "k", "N/m", published_stiffness_N_per_m),
-      plain("drag_kg_per_s", "b", "kg/s", published_drag_kg_per_s),
-      plain("pressure_Pa", "P", "Pa", published_pressure_Pa),
-      {"omega_rad_per_s", formula("$ω$"), "rad/s", 2 * pi / published_period_s, "2*pi/period_s"},
-      {"steps_per_cycle", "steps/cycle", "", published_steps_per_cycle, "steps_per_cycle"},
-      {"time_step_s", formula("$Δt$"), "s", published_time_step, "period_s/steps_per_cycle"},
-      plain("gravity_m_per_s2", "g", "m/s²", published_gravity_m_per_s2)};
-  return all;
-}
+/// A row of Table I, or the time step, which follows from two rows.
+struct Parameter {
+  const char* name;          ///< ends in the unit
+  const char* heading;       ///< symbol and unit; may contain formulas
+  double published;          ///< value in all simulations, unless a section varies it
+  const char* value = name;  ///< expression of manifest keys; it varies if one of them is swept
+};
+
+constexpr Parameter parameters[] = {
+    {"mass_kg", "$m$ [kg]", 2.0e-5},
+    {"diameter_m", "$d$ [m]", 3.0e-3},
+    {"stiffness_N_per_m", "$k$ [N/m]", 6.54e2},
+    {"drag_kg_per_s", "$b$ [kg/s]", 1.28e-3},
+    {"pressure_Pa", "$P$ [Pa]", 9.54e2},
+    {"omega_rad_per_s", "$ω$ [rad/s]", pi, "2*pi/period_s"},
+    {"steps_per_cycle", "steps/cycle", 45600},
+    {"time_step_s", "$Δt$ [s]", 2.0 / 45600, "period_s/steps_per_cycle"},
+    {"gravity_m_per_s2", "$g$ [m/s²]", 9.81}};
 
 /// The values of one parameter in the runs of one experiment.
 struct Found {
@@ -69,10 +60,9 @@ struct Found {
   }
 };
 
-using RunList = std::vector<const FrameRun*>;
-
-Found found_in(const RunList& runs, const Parameter& parameter) {
+Found found_in(RunGroup runs, const Parameter& parameter) {
   Found found;
+  const std::string_view name = parameter.name;
   const NumberColumn column(parameter.value);
   for (const FrameRun* run : runs) {
     const double value = column(*run);
@@ -84,7 +74,7 @@ Found found_in(const RunList& runs, const Parameter& parameter) {
     }
     // A stiffening records the stiffness at each checkpoint.
     const double stiffness = run->checkpoints.back().measures.number("raised_stiffness_N_per_m");
-    if (parameter.value == "stiffness_N_per_m" && std::isfinite(stiffness)) {
+    if (name == "stiffness_N_per_m" && std::isfinite(stiffness)) {
       found.take(stiffness);
       found.varied = true;
     }
@@ -103,8 +93,8 @@ Text number_text(double value) {
 
 Text range_text(const Found& found) {
   if (found.runs == 0) return "–";
-  if (found.is_one_value()) return number_text(found.smallest);
-  return number_text(found.smallest) + " – " + number_text(found.largest);
+  const Text smallest = number_text(found.smallest);
+  return found.is_one_value() ? smallest : smallest + " – " + number_text(found.largest);
 }
 
 /// The first two rows of the drawn table: the headings, and the values of the supplement.
@@ -112,12 +102,10 @@ TextTable heading() {
   TextTable text{.widths = {170},
                  .rows = {{{"experiment"}}, {{"supplement, Table I"}}},
                  .note = "blue: varied by the experiment; red: differs from Table I"};
-  for (const Parameter& parameter : parameters()) {
+  for (const Parameter& parameter : parameters) {
     const std::string_view name = parameter.name;
     text.widths.push_back(name == "time_step_s" || name == "stiffness_N_per_m" ? 185 : 112);
-    const std::string unit =
-        std::string_view(parameter.unit).empty() ? "" : fmt::format(" [{}]", parameter.unit);
-    text.rows[0].push_back({parameter.symbol + unit});
+    text.rows[0].push_back({formula(parameter.heading)});
     text.rows[1].push_back({number_text(parameter.published)});
   }
   return text;
@@ -130,7 +118,7 @@ const char* colour_of(std::string_view comparison) {
 }  // namespace
 
 FigureResult figure_table1(const Frame& frame) {
-  std::map<std::string, RunList> experiments;
+  std::map<std::string, std::vector<const FrameRun*>> experiments;
   for (const FrameRun& run : frame.runs) {
     if (!run.checkpoints.empty()) experiments[run.place.experiment].push_back(&run);
   }
@@ -141,7 +129,7 @@ FigureResult figure_table1(const Frame& frame) {
   for (const auto& [experiment, members] : experiments) {
     auto& row = table.text.rows.emplace_back();
     row.push_back({experiment});
-    for (const Parameter& parameter : parameters()) {
+    for (const Parameter& parameter : parameters) {
       const Found found = found_in(members, parameter);
       const std::string comparison = found.beside(parameter.published);
       table.rows.push_back({experiment, parameter.name, parameter.published, found.smallest,

@@ -258,7 +258,7 @@ EncodedFrame encode_frame(const Checkpoint& checkpoint, const WallPose& pose,
   }
   for (const double phi : grains.phi_local) put_word(phi * largest_word, frame.bytes);
   for (const double q6 : grains.q6) put_word(q6 * largest_word, frame.bytes);
-  for (const std::int32_t label : grains.crystallites.label) put_word(label + 1.0, frame.bytes);
+  for (const std::int32_t label : grains.crystallite) put_word(label + 1.0, frame.bytes);
   for (std::size_t i = 0; i < grains.structure.size(); ++i) {
     const unsigned interior = grains.interior[i] != 0 ? 4 : 0;
     frame.bytes.push_back(

@@ -100,7 +100,7 @@ TEST(DerivedMeasures, CrystallitesAreRestoredBitByBit) {
   EXPECT_EQ(back.width, map.width);
   for (std::size_t k = 0; k < map.grain.size(); ++k) {
     const auto id = static_cast<std::size_t>(map.grain[k]);
-    EXPECT_EQ(analysis.grains.crystallites.label[id], map.label[k]);
+    EXPECT_EQ(analysis.grains.crystallite[id], map.label[k]);
   }
 }
 

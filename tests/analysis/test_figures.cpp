@@ -20,7 +20,6 @@
 
 #include "analysis/error.hpp"
 #include "analysis/figure.hpp"
-#include "analysis/figures/figures.hpp"
 #include "analysis/growth.hpp"
 #include "analysis/plot.hpp"
 #include "provenance/io/child_process.hpp"

@@ -198,7 +198,7 @@ TEST(Mechanics, EqualsSumsOverAllPairs) {
       EXPECT_NEAR(found.grains.largest_overlap[i], all.largest_overlap[i], 1e-13);
     }
     EXPECT_EQ(found.grains.contacts, all.contacts);
-    EXPECT_NEAR(found.measures.mean_overlap, all.overlaps / all.pairs, 1e-13);
+    EXPECT_NEAR(found.measures.mean_overlap_d, all.overlaps / all.pairs, 1e-13);
     const auto interior = static_cast<double>(found.measures.interior_grains);
     double rattlers = 0;
     for (std::size_t i = 0; i < found.grains.interior.size(); ++i) {

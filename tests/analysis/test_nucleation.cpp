@@ -9,7 +9,6 @@
 #include <cmath>
 #include <vector>
 
-#include "analysis/figures/figures.hpp"
 #include "core/random.hpp"
 #include "tests/analysis/made_up_runs.hpp"
 #include "tests/support/text.hpp"
@@ -107,9 +106,13 @@ std::vector<FrameRun> with_copies(std::vector<FrameRun> runs, double amplitude, 
   return runs;
 }
 
+FigureResult s7(std::span<const FrameRun> runs) {
+  return find_figure("S7")->make(runs);
+}
+
 std::vector<Ruling> rulings(std::span<const FrameRun> runs) {
   std::vector<Ruling> all;
-  for (const Verdict& verdict : figure_s7(runs).verdicts) all.push_back(verdict.ruling);
+  for (const Verdict& verdict : s7(runs).verdicts) all.push_back(verdict.ruling);
   return all;
 }
 
@@ -132,14 +135,14 @@ TEST(FigureS7, DecidesCorrectlyForKnownPlaces) {
 TEST(FigureS7, CountsRunsOfOnePackingTogether) {
   const auto even = [](double u) { return u; };
   const std::vector<FrameRun> runs = runs_with_places(10, even, even);
-  const Verdict once = figure_s7(runs).verdicts[1];
-  const Verdict shared = figure_s7(with_copies(runs, 0.1, true)).verdicts[1];
+  const Verdict once = s7(runs).verdicts[1];
+  const Verdict shared = s7(with_copies(runs, 0.1, true)).verdicts[1];
   EXPECT_EQ(shared.estimate, once.estimate);
   EXPECT_EQ(shared.interval.low, once.interval.low);
   EXPECT_EQ(shared.interval.high, once.interval.high);
   EXPECT_EQ(shared.runs, 6U);
   EXPECT_TRUE(has(shared.note, "120 nuclei of 15 to 25 grains in 12 of 12 runs; 6 packings"));
-  const Verdict apart = figure_s7(with_copies(runs, 0.1, false)).verdicts[1];
+  const Verdict apart = s7(with_copies(runs, 0.1, false)).verdicts[1];
   EXPECT_EQ(apart.runs, 12U);
   EXPECT_LT(apart.interval.high - apart.interval.low, once.interval.high - once.interval.low);
 }

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // g(r) and S(k): sums over all pairs and all grains, grains at random, a lattice. tests/export
 // compares pair counts with LAMMPS.
-#include "analysis/pair_structure.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,6 +15,7 @@ namespace shearcell::test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
+constexpr double pair_bin_d = 0.02, wave_bin_per_d = 0.25;
 
 std::vector<std::uint8_t> interior_of(const Packing& p) {
   return interior_grains(p.cell, p.pose, p.grains);

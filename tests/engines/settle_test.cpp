@@ -134,14 +134,14 @@ TEST_F(LammpsSettling, GivesSimilarPackings) {
           "%.3f, overlap %.3e d, imbalance %.1e, height %.3f d\n",
           s->engine, static_cast<double>(s->state.step), s->seconds, s->rate,
           1e-6 * static_cast<double>(s->bytes), s->numbers.phi, s->numbers.contacts_per_grain,
-          s->numbers.mean_overlap, s->numbers.imbalance, s->numbers.height);
+          s->numbers.mean_overlap_d, s->numbers.imbalance, s->numbers.height);
       EXPECT_LE(s->numbers.imbalance, SettleParameters{}.force_tolerance);
       EXPECT_LT(s->state.velocity.norm(), 1);
       EXPECT_GT(s->rate, 0);
       EXPECT_GT(s->bytes, 10'000U);
       phi[s == &theirs].push_back(s->numbers.phi);
       contacts[s == &theirs].push_back(s->numbers.contacts_per_grain);
-      overlap[s == &theirs].push_back(s->numbers.mean_overlap);
+      overlap[s == &theirs].push_back(s->numbers.mean_overlap_d);
     }
     const Settle protocol({}, settle_scene(loose.parameters));
     EXPECT_EQ(protocol.next_check(theirs.state.step - 1), theirs.state.step) << "ended at a look";
@@ -153,7 +153,7 @@ TEST_F(LammpsSettling, GivesSimilarPackings) {
     EXPECT_NEAR(ours.numbers.phi, theirs.numbers.phi, 0.02);
     EXPECT_NEAR(ours.numbers.contacts_per_grain, theirs.numbers.contacts_per_grain, 0.3);
     EXPECT_NEAR(ours.numbers.height, theirs.numbers.height, 0.3);
-    EXPECT_NEAR(theirs.numbers.mean_overlap / ours.numbers.mean_overlap, 1, 0.3);
+    EXPECT_NEAR(theirs.numbers.mean_overlap_d / ours.numbers.mean_overlap_d, 1, 0.3);
   }
   print("phi", phi[0], phi[1]);
   print("contacts per grain", contacts[0], contacts[1]);

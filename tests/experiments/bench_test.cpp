@@ -75,7 +75,7 @@ TEST(Overlap, IsAsAPlanPredicts) {
     p.settle_time_step_s /= std::sqrt(c.stiffness);
     p.moving_wall = c.moving;
     const Packing packing = settled_packing(p, 1);
-    const double found = numbers_of(packing.cell, packing.scene, packing.state).mean_overlap;
+    const double found = numbers_of(packing.cell, packing.scene, packing.state).mean_overlap_d;
     std::printf("N = %d, P x %g, k x %g: %.3e d, expected %.3e d\n", static_cast<int>(c.grains),
                 c.pressure, c.stiffness, found, expected_overlap(p));
     EXPECT_NEAR(found / expected_overlap(p), 1, 0.15);

@@ -125,7 +125,7 @@ nlohmann::json truth(const Checkpoint& c) {
   std::vector<int> structure, crystallite, id;
   for (std::size_t i = 0; i < phi_local.size(); ++i) {
     structure.push_back(static_cast<int>(measured.grains.structure[i]));
-    crystallite.push_back(measured.grains.crystallites.label[i] + 1);
+    crystallite.push_back(measured.grains.crystallite[i] + 1);
   }
   for (std::size_t i = 0; i < type.size(); ++i) id.push_back(static_cast<int>(i) + 1);
   for (double& of_grain : pressure) of_grain *= 654.0 / 3e-3;

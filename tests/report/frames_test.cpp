@@ -43,7 +43,7 @@ GrainMeasures measures_of_each() {
     grains.q6.push_back(0.6 - 0.4 * i / kFrameGrains);
     grains.structure.push_back(static_cast<Structure>(i % 3));
     grains.interior.push_back(i % 2 == 0 ? 1 : 0);
-    grains.crystallites.label.push_back(i % 5 - 1);
+    grains.crystallite.push_back(i % 5 - 1);
   }
   return grains;
 }
@@ -108,7 +108,7 @@ TEST_F(Frames, KeepTheMeasuresOfEachGrain) {
   for (std::size_t i = 0; i < kFrameGrains; ++i) {
     EXPECT_NEAR(word(phi + i) / 65535, grains_.phi_local[i], 0.5 / 65535 * 1.001);
     EXPECT_NEAR(word(phi + kFrameGrains + i) / 65535, grains_.q6[i], 0.5 / 65535 * 1.001);
-    EXPECT_EQ(word(phi + 2 * kFrameGrains + i), grains_.crystallites.label[i] + 1);
+    EXPECT_EQ(word(phi + 2 * kFrameGrains + i), grains_.crystallite[i] + 1);
     const int flags = byte(2 * (phi + 3 * kFrameGrains) + i);
     EXPECT_EQ(flags & 3, static_cast<int>(grains_.structure[i]));
     EXPECT_EQ(flags >> 2, grains_.interior[i]);
