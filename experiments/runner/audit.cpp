@@ -272,7 +272,7 @@ std::vector<Finding> check_runs(const Store& store) {
       check_stage(stage);
       if (stage.parent.empty()) continue;
       if (store.stage(stage.parent).kind != name_of(StageKind::prepare)) {
-        const auto start = recorded_start(store, stage, read_stage(stage.resolved).parameters);
+        const auto start = starting_state(store, stage, read_stage(stage.resolved).parameters);
         check_beginning(store, stage, start ? std::set{start->step} : std::set<std::uint64_t>{});
         continue;
       }
