@@ -187,16 +187,6 @@ std::string verdict_text(const ComputedFigure& figure) {
   return verdict.dump(1) + "\n";
 }
 
-/// The title of the figure. If the runs differ only in parameters that the figure does not compare,
-/// the title names these parameters.
-std::string title_of(const Figure& figure, const std::vector<FrameRun>& runs) {
-  const std::vector<std::string> varied = varied_keys(runs);
-  const bool of_its_keys = std::ranges::any_of(
-      varied, [&](const std::string& key) { return std::ranges::count(figure.keys, key) > 0; });
-  if (figure.keys.empty() || varied.empty() || of_its_keys) return figure.title;
-  return fmt::format("{} (these runs differ in {})", figure.title, fmt::join(varied, ", "));
-}
-
 /// Sets ComputedFigure::primary and Verdict::primary from the key `primary` of the experiment's
 /// manifest at this scale. A figure of all experiments uses all manifests. A manifest names a claim
 /// by the claim's id, with or without the value of `for_each`. Older manifests name a claim by its
@@ -238,7 +228,6 @@ void make_of_runs(const Store& store, const WantedFigure& wanted, const FigureOp
                        "make a separate experiment for each value, or define a plot "
                        "in the manifest (`plots`)");
   }
-  made.title = title_of(figure, runs);
   for (const FrameRun& run : runs) ++made.runs_by_variant[run.name];
   const std::vector<const FrameRun*> counted_once = all_runs_with(nlohmann::json::object(), runs);
   made.runs = counted_once.size();
