@@ -145,44 +145,34 @@ void name_variants(const std::vector<VariantLabel>& labels, const std::string& e
   }
 }
 
-/// The planned runs of the scale; empty if the sweep has more variants than ManifestLimits::runs.
-PlannedRuns plan_runs(const Manifest& manifest, const std::string& scale_name) {
-  PlannedRuns planned;
+/// Sets Frame::seeds and Frame::looks. Adds to Frame::pending the planned runs that are not yet
+/// declared. Does nothing if the sweep has more variants than ManifestLimits::runs.
+void add_planned(const Manifest& manifest, CollectedRuns& collected) {
+  std::set<std::pair<std::uint64_t, nlohmann::json>> declared;
+  for (const FrameRun& run : collected.runs) {
+    if (run.place.experiment == manifest.experiment) {
+      declared.emplace(run.place.seed, run.place.swept);
+    }
+  }
   for (const Scale& scale : scales_of(manifest)) {
-    if (scale.name != scale_name || variant_count(scale.sweep) > ManifestLimits::runs) continue;
-    planned.seeds = scale.seeds.values;
-    planned.looks = scale.looks;
+    if (scale.name != collected.scale || variant_count(scale.sweep) > ManifestLimits::runs)
+      continue;
+    const std::vector<std::uint64_t>& seeds = scale.seeds.values;
+    collected.looks = scale.looks;
+    std::ranges::copy_if(seeds, std::back_inserter(collected.seeds), [&](std::uint64_t seed) {
+      return std::ranges::count(collected.seeds, seed) == 0;
+    });
     const std::vector<Variant> variants = variants_of(scale);
     const std::vector<FrameRun> runs = planned_runs(manifest, scale, variants);
     for (std::size_t k = 0; k < variants.size(); ++k) {
-      for (const std::uint64_t seed : planned.seeds | std::views::take(variants[k].seeds)) {
-        planned.runs.push_back(runs[k]);
-        planned.runs.back().place.seed = seed;
-        planned.runs.back().stage.id += fmt::format(" seed {}", seed);
+      for (const std::uint64_t seed : seeds | std::views::take(variants[k].seeds)) {
+        if (declared.contains({seed, runs[k].place.swept})) continue;
+        FrameRun& run = collected.pending.emplace_back(runs[k]);
+        run.place.seed = seed;
+        run.stage.id += fmt::format(" seed {}", seed);
       }
     }
   }
-  return planned;
-}
-
-/// Sets Frame::seeds and Frame::looks. Adds to Frame::pending the planned runs that are not yet
-/// declared.
-void add_planned(const ReadManifest& manifest, CollectedRuns& collected) {
-  const auto [known, fresh] = manifest.planned.try_emplace(collected.scale);
-  if (fresh) known->second = plan_runs(manifest.content, collected.scale);
-  const PlannedRuns& planned = known->second;
-  std::set<std::pair<std::uint64_t, nlohmann::json>> declared;
-  for (const FrameRun& run : collected.runs) {
-    if (run.place.experiment != manifest.experiment) continue;
-    declared.emplace(run.place.seed, run.place.swept);
-  }
-  for (const std::uint64_t seed : planned.seeds) {
-    if (std::ranges::count(collected.seeds, seed) == 0) collected.seeds.push_back(seed);
-  }
-  if (!planned.seeds.empty()) collected.looks = planned.looks;
-  std::ranges::copy_if(planned.runs, std::back_inserter(collected.pending), [&](const auto& run) {
-    return !declared.contains({run.place.seed, run.place.swept});
-  });
 }
 
 /// Adds the name of the experiment to the swept values, to the variant and to the name of the run.
@@ -414,7 +404,7 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
     for (const ReadManifest& manifest : manifests) {
       if (!experiments.contains(manifest.experiment)) continue;
       name_variants(manifest.content.labels, manifest.experiment, collected);
-      if (all_seeds) add_planned(manifest, collected);
+      if (all_seeds) add_planned(manifest.content, collected);
     }
     if (!wanted.figure.of.empty()) join(wanted.figure.of, collected);
     for (const FrameRun& run : collected.runs) collected.variants.push_back(run.place.swept);
@@ -429,11 +419,7 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
   }
   add_checkpoints(store, wanted.figure, measuring, collected);
   for (const FrameRun& run : collected.runs) {
-    const nlohmann::json& resolved = run.stage.resolved;
-    if (resolved.is_object() &&
-        resolved.value("parameters", nlohmann::json::object()).is_object()) {
-      continue;
-    }
+    if (member_of(run.stage.resolved, "parameters").is_object()) continue;
     throw StoreDamaged(fmt::format(
         "the record of run {:.8} has no parameters; `shearcell verify` reports all damage",
         run.stage.id));

@@ -2,7 +2,6 @@
 // Selects the runs and checkpoints of a store that belong to a figure.
 #pragma once
 
-#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -17,17 +16,9 @@
 
 namespace shearcell {
 
-/// The runs that a manifest plans at one scale.
-struct PlannedRuns {
-  std::vector<FrameRun> runs;        ///< one for each variant and seed
-  std::vector<std::uint64_t> seeds;  ///< in the order of the manifest
-  std::vector<std::size_t> looks;
-};
-
 /// A registered manifest in its newest version. `content` is its parsed text.
 struct ReadManifest : RegisteredManifest {
   Manifest content;
-  mutable std::map<std::string, PlannedRuns> planned = {};  ///< by scale; filled on demand
 };
 using ReadManifests = std::shared_ptr<const std::vector<ReadManifest>>;
 
@@ -37,7 +28,7 @@ struct WantedFigure {
   /// Providers that other figures of the experiment need, for MeasureOptions::also.
   std::vector<std::string> also = {};
   /// The manifests of the store. All figures of one command share them, so that each manifest is
-  /// read and expanded only once. If null, collect_runs() reads the manifests.
+  /// read only once. If null, collect_runs() reads the manifests.
   ReadManifests manifests = {};
 
   /// "drag/S2", for messages.
