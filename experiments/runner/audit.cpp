@@ -131,22 +131,16 @@ std::vector<CachedMeasure> cached_measures(const CheckpointRecord& record, Deriv
                                            MeasureSources& sources) {
   sources.read_run(record.run);
   std::vector<CachedMeasure> found;
-  std::vector<DerivedKey> keys;
   for (const Provider& one : all_providers()) {
     for (const std::uint64_t every : sources.cadences(record.run)) {
       if (!one.is_kept() || (every != 1 && one.cycles_back == 0)) continue;
-      keys.push_back(sources.key(record, one, every));
-      found.push_back({&one, every, {keys.back(), {}}});
+      DerivedObject object{sources.key(record, one, every), {}};
+      auto content = cache.get({&object.key, 1}).front();
+      if (!content) continue;
+      object.content = std::move(*content);
+      found.push_back({&one, every, std::move(object)});
     }
   }
-  auto cached = cache.get(keys);
-  std::size_t k = 0;
-  std::erase_if(found, [&](CachedMeasure& one) {
-    const bool has = cached[k].has_value();
-    if (has) one.object.content = std::move(*cached[k]);
-    ++k;
-    return !has;
-  });
   return found;
 }
 

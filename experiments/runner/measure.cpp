@@ -22,7 +22,6 @@ namespace shearcell {
 namespace {
 
 using nlohmann::json;
-using Results = std::vector<json>;
 
 // Results are cached in batches, because writing to the cache takes longer than a small analysis.
 constexpr std::size_t kBatch = 64;
@@ -38,36 +37,24 @@ class Measuring {
     // `checkpoints` lists a checkpoint twice if two experiments share it.
     std::map<std::pair<std::string_view, std::uint64_t>, std::size_t> known;
     for (const ToMeasure& one : checkpoints) {
-      sources_.read_run(one.checkpoint->run);
       const std::pair which = {std::string_view(one.checkpoint->sha256), one.every};
-      const auto [entry, fresh] = known.try_emplace(which, distinct_.size());
-      if (fresh) distinct_.push_back(one);
+      const auto [entry, fresh] = known.try_emplace(which, tasks_.size());
       place_.push_back(entry->second);
-    }
-    results_.assign(distinct_.size(), Results(providers_.size()));
-    for (std::size_t i = 0; i < distinct_.size(); ++i) {
-      const auto [record, every] = distinct_[i];
-      for (std::size_t p = 0; p < providers_.size(); ++p) {
-        keys_.push_back(sources_.key(*record, *providers_[p], every));
-        if (!takes(*record, *providers_[p])) {
-          results_[i][p] = json::object();  // an empty result
-          continue;
-        }
-        const CheckpointRecord* other = sources_.earlier(*record, *providers_[p], every);
-        if (other != nullptr) outcome_.earlier.insert(other->sha256);
-      }
+      if (!fresh) continue;
+      sources_.read_run(one.checkpoint->run);
+      look_up(tasks_.emplace_back(Task{one}));
     }
   }
 
   MeasureOutcome run() {
-    look_up();
-    for (std::size_t i = 0; i < distinct_.size(); ++i) {
-      const auto wanted = std::span(results_[i]).first(wanted_);
-      if (std::ranges::any_of(wanted, &json::is_null)) todo_.push_back(i);
+    std::vector<Task*> todo;
+    for (Task& task : tasks_) {
+      const auto wanted = std::span(task.results).first(wanted_);
+      if (std::ranges::any_of(wanted, &json::is_null)) todo.push_back(&task);
     }
     try {
       outcome_ += read_in_parallel(
-          todo_.size(), options_.workers, [this](std::size_t n) { compute(todo_[n]); },
+          todo.size(), options_.workers, [&](std::size_t n) { compute(*todo[n]); },
           options_.report);
     } catch (...) {
       flush();
@@ -75,13 +62,20 @@ class Measuring {
     }
     flush();
     for (std::size_t k = 0; k < place_.size(); ++k) {
-      read(*checkpoints_[k].checkpoint, results_[place_[k]]);
+      read(*checkpoints_[k].checkpoint, tasks_[place_[k]].results);
     }
     outcome_.cache_trouble = cache_.trouble();
     return std::move(outcome_);
   }
 
  private:
+  /// A checkpoint that is measured once. Each provider has one key and one result; the result is
+  /// null until it is known.
+  struct Task : ToMeasure {
+    std::vector<DerivedKey> keys = {};
+    std::vector<json> results = {};
+  };
+
   void add(const Provider& one) {
     const bool listed = std::ranges::find(providers_, &one) != providers_.end();
     if (one.is_kept() && !listed) providers_.push_back(&one);
@@ -94,51 +88,59 @@ class Measuring {
     return record.cycle >= static_cast<double>(first) && record.cycle <= static_cast<double>(last);
   }
 
-  void look_up() {
-    const auto found = cache_.get(keys_);
-    for (const ToMeasure& one : distinct_) {
-      if (one.checkpoint->state == CheckpointState::pruned && !cache_.trouble().empty()) {
-        const std::string why =
-            cache_.trouble() + "; the measures of pruned checkpoints are only in derived.sqlite";
-        if (cache_.is_unread()) throw MachineError(why);
-        throw StoreDamaged(why);
-      }
-      const auto pruned = sources_.compare_pruned(*one.checkpoint, cache_);
-      for (const std::string& damage :
-           {pruned.altered, pruned.absent > 0 ? cache_.replaced() : ""}) {
-        if (!damage.empty()) outcome_.damage.insert(damage);
-      }
+  void look_up(Task& task) {
+    const CheckpointRecord& record = *task.checkpoint;
+    const bool is_pruned = record.state == CheckpointState::pruned;
+    for (const Provider* one : providers_) {
+      task.keys.push_back(sources_.key(record, *one, task.every));
     }
-    for (std::size_t k = 0; k < keys_.size(); ++k) {
-      json& result = results_[k / providers_.size()][k % providers_.size()];
-      if (!found[k] || !result.is_null()) continue;
-      const CheckpointRecord& record = *distinct_[k / providers_.size()].checkpoint;
+    const auto found = cache_.get(task.keys);
+    if (is_pruned && !cache_.trouble().empty()) {
+      const std::string why =
+          cache_.trouble() + "; the measures of pruned checkpoints are only in derived.sqlite";
+      if (cache_.is_unread()) throw MachineError(why);
+      throw StoreDamaged(why);
+    }
+    const auto pruned = sources_.compare_pruned(record, cache_);
+    for (const std::string& damage : {pruned.altered, pruned.absent > 0 ? cache_.replaced() : ""}) {
+      if (!damage.empty()) outcome_.damage.insert(damage);
+    }
+    for (std::size_t p = 0; p < providers_.size(); ++p) {
+      json& result = task.results.emplace_back();
+      if (!takes(record, *providers_[p])) {
+        result = json::object();  // an empty result
+        continue;
+      }
+      const CheckpointRecord* other = sources_.earlier(record, *providers_[p], task.every);
+      if (other != nullptr) outcome_.earlier.insert(other->sha256);
       // If the log has digests of other results only, the checkpoint must not be pruned.
-      const bool kept = record.state != CheckpointState::pruned;
-      if (!sources_.is_as_pruned(record, {keys_[k], *found[k]}).value_or(kept)) continue;
+      if (!found[p] ||
+          !sources_.is_as_pruned(record, {task.keys[p], *found[p]}).value_or(!is_pruned)) {
+        continue;
+      }
       try {
-        result = decode_result(*found[k]);
+        result = decode_result(*found[p]);
       } catch (const AnalysisError&) {
         // The hash matches, but the bytes are not a result: the result is recomputed and replaced.
       }
     }
   }
 
-  void compute(std::size_t i) {
-    const CheckpointRecord& record = *distinct_[i].checkpoint;
+  void compute(Task& task) {
+    const CheckpointRecord& record = *task.checkpoint;
     const Checkpoint checkpoint = sources_.load(record);
     std::optional<Analysis> analysis;  // computed once, if a provider needs it
     std::vector<DerivedObject> objects;
     MeasureOutcome unread;
     for (std::size_t p = 0; p < providers_.size(); ++p) {
-      if (!results_[i][p].is_null()) continue;
+      if (!task.results[p].is_null()) continue;
       const bool analyses = providers_[p]->from != ComputedFrom::simulation;
       if (analyses && !analysis) analysis = analyse_stored(record, checkpoint);
-      auto result = sources_.compute(*providers_[p], record, distinct_[i].every, &checkpoint,
+      auto result = sources_.compute(*providers_[p], record, task.every, &checkpoint,
                                      analysis ? &*analysis : nullptr, unread);
       if (!result) continue;
-      objects.push_back({keys_[i * providers_.size() + p], encode_result(*result)});
-      results_[i][p] = std::move(*result);
+      objects.push_back({task.keys[p], encode_result(*result)});
+      task.results[p] = std::move(*result);
     }
     const std::lock_guard lock(mutex_);
     outcome_.measured.insert(record.sha256);
@@ -152,7 +154,7 @@ class Measuring {
     pending_.clear();
   }
 
-  void read(CheckpointMeasures& one, const Results& results) try {
+  void read(CheckpointMeasures& one, const std::vector<json>& results) try {
     one.measures = {};
     one.lacking.clear();
     for (std::size_t p = 0; p < wanted_; ++p) {
@@ -173,12 +175,9 @@ class Measuring {
   const MeasureOptions& options_;
   std::vector<const Provider*> providers_;  // the requested providers, then MeasureOptions::also
   std::size_t wanted_ = 0;                  // number of requested providers (without `also`)
-  std::vector<ToMeasure> distinct_;
-  std::vector<std::size_t> place_;  // for each checkpoint, its index in distinct_
-  std::vector<DerivedKey> keys_;    // one per provider, for each checkpoint in distinct_
-  std::vector<std::size_t> todo_;
-  std::vector<Results> results_;  // one per checkpoint in distinct_, each written by one thread
-  std::mutex mutex_;              // guards the members below while threads run
+  std::vector<Task> tasks_;                 // the results of a task are written by one thread
+  std::vector<std::size_t> place_;          // for each checkpoint, its index in tasks_
+  std::mutex mutex_;                        // guards the members below while threads run
   DerivedCache cache_;
   std::vector<DerivedObject> pending_;
   MeasureOutcome outcome_;
