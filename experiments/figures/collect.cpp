@@ -147,14 +147,14 @@ void name_variants(const std::vector<VariantLabel>& labels, const std::string& e
 
 /// Sets Frame::seeds and Frame::looks. Adds to Frame::pending the planned runs that are not yet
 /// declared. Does nothing if the sweep has more variants than ManifestLimits::runs.
-void add_planned(const Manifest& manifest, CollectedRuns& collected) {
+void add_planned(const RegisteredManifest& manifest, CollectedRuns& collected) {
   std::set<std::pair<std::uint64_t, nlohmann::json>> declared;
   for (const FrameRun& run : collected.runs) {
     if (run.place.experiment == manifest.experiment) {
       declared.emplace(run.place.seed, run.place.swept);
     }
   }
-  for (const Scale& scale : scales_of(manifest)) {
+  for (const Scale& scale : scales_of(manifest.content)) {
     if (scale.name != collected.scale || variant_count(scale.sweep) > ManifestLimits::runs)
       continue;
     const std::vector<std::uint64_t>& seeds = scale.seeds.values;
@@ -163,7 +163,7 @@ void add_planned(const Manifest& manifest, CollectedRuns& collected) {
       return std::ranges::count(collected.seeds, seed) == 0;
     });
     const std::vector<Variant> variants = variants_of(scale);
-    const std::vector<FrameRun> runs = planned_runs(manifest, scale, variants);
+    const std::vector<FrameRun> runs = planned_runs(manifest.content, scale, variants);
     for (std::size_t k = 0; k < variants.size(); ++k) {
       for (const std::uint64_t seed : seeds | std::views::take(variants[k].seeds)) {
         if (declared.contains({seed, runs[k].place.swept})) continue;
@@ -222,9 +222,10 @@ std::vector<Run> runs_of(const Store& store, const WantedFigure& wanted,
 
 /// The scale of the run that was declared last. Runs of older manifest versions are considered only
 /// if no run belongs to a newest version.
-std::string last_scale(const std::vector<Run>& runs, const std::vector<ReadManifest>& manifests) {
+std::string last_scale(const std::vector<Run>& runs,
+                       const std::vector<RegisteredManifest>& manifests) {
   const auto is_newest = [&](const Run& run) {
-    return std::ranges::count(manifests, run.place.manifest, &ReadManifest::sha256) > 0;
+    return std::ranges::count(manifests, run.place.manifest, &RegisteredManifest::sha256) > 0;
   };
   const auto last = std::ranges::find_if(runs.rbegin(), runs.rend(), is_newest);
   return (last == runs.rend() ? runs.back() : *last).place.scale;
@@ -249,11 +250,7 @@ void share_needs(std::vector<WantedFigure>& figures) {
 }
 
 ReadManifests read_manifests(const Store& store) {
-  std::vector<ReadManifest> read;
-  for (const RegisteredManifest& one : newest_manifests(store)) {
-    read.push_back({one, recorded_manifest(one.text)});
-  }
-  return std::make_shared<const std::vector<ReadManifest>>(std::move(read));
+  return std::make_shared<const std::vector<RegisteredManifest>>(newest_manifests(store));
 }
 
 }  // namespace
@@ -294,9 +291,9 @@ std::string WantedFigure::path() const {
 WantedFigures wanted_figures(const Store& store, const std::vector<std::string>& names,
                              const std::vector<std::string>& experiments) {
   const ReadManifests read = read_manifests(store);
-  const std::vector<ReadManifest>& manifests = *read;
+  const std::vector<RegisteredManifest>& manifests = *read;
   std::vector<std::string_view> registered;
-  for (const ReadManifest& manifest : manifests) registered.emplace_back(manifest.experiment);
+  for (const RegisteredManifest& manifest : manifests) registered.emplace_back(manifest.experiment);
   for (const std::string& experiment : experiments) {
     if (std::ranges::count(registered, experiment) == 0) {
       throw NotFound(unknown_name("experiment", experiment, registered));
@@ -311,7 +308,7 @@ WantedFigures wanted_figures(const Store& store, const std::vector<std::string>&
   std::vector<std::string_view> supplement;
   for (const Figure& figure : all_figures()) supplement.emplace_back(figure.name);
   std::set<std::string> known(supplement.begin(), supplement.end()), reported;
-  for (const ReadManifest& manifest : manifests) {
+  for (const RegisteredManifest& manifest : manifests) {
     if (!among(experiments, manifest.experiment)) continue;
     std::vector<Figure> stated = stated_figures(manifest.content);
     for (const Figure& figure : all_figures()) {
@@ -334,7 +331,7 @@ WantedFigures wanted_figures(const Store& store, const std::vector<std::string>&
     if (!is_across(figure) || manifests.empty() || !asked(figure.name)) continue;
     // Without `names`, table1 is drawn if a manifest lists figures of the supplement, and a figure
     // that compares experiments is drawn if the store has two or more experiments that it compares.
-    const auto lists_any = [](const ReadManifest& one) { return !one.figures.empty(); };
+    const auto lists_any = [](const RegisteredManifest& one) { return !one.figures.empty(); };
     const auto registers = [&](const std::string& of) { return among(registered, of); };
     const bool has_runs = figure.of.empty() ? std::ranges::any_of(manifests, lists_any)
                                             : std::ranges::count_if(figure.of, registers) > 1;
@@ -369,7 +366,7 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
                            const RunSelection& selection, const MeasureOptions& measuring) {
   CollectedRuns collected;
   collected.manifests = wanted.manifests ? wanted.manifests : read_manifests(store);
-  const std::vector<ReadManifest>& manifests = *collected.manifests;
+  const std::vector<RegisteredManifest>& manifests = *collected.manifests;
   std::vector<Run> selected = runs_of(store, wanted, selection);
   collected.scale = last_scale(selected, manifests);
   std::set<std::string> at_scale, elsewhere;  // names of experiments
@@ -401,10 +398,10 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
     std::set<std::string> experiments;
     for (const FrameRun& run : collected.runs) experiments.insert(run.place.experiment);
     const bool all_seeds = selection.seeds.empty() && selection.variants.empty();
-    for (const ReadManifest& manifest : manifests) {
+    for (const RegisteredManifest& manifest : manifests) {
       if (!experiments.contains(manifest.experiment)) continue;
       name_variants(manifest.content.labels, manifest.experiment, collected);
-      if (all_seeds) add_planned(manifest.content, collected);
+      if (all_seeds) add_planned(manifest, collected);
     }
     if (!wanted.figure.of.empty()) join(wanted.figure.of, collected);
     for (const FrameRun& run : collected.runs) collected.variants.push_back(run.place.swept);

@@ -16,11 +16,8 @@
 
 namespace shearcell {
 
-/// A registered manifest in its newest version. `content` is its parsed text.
-struct ReadManifest : RegisteredManifest {
-  Manifest content;
-};
-using ReadManifests = std::shared_ptr<const std::vector<ReadManifest>>;
+/// The newest_manifests() of a store.
+using ReadManifests = std::shared_ptr<const std::vector<RegisteredManifest>>;
 
 struct WantedFigure {
   Figure figure;

@@ -64,9 +64,10 @@ nlohmann::json inputs_of(const Store& store, const ComputedFigure& figure,
 /// Names the version of this program if the program defines the figure's plots, because the
 /// manifest does not. (Older manifests only list the name of the figure.) Returns "" if the
 /// manifest defines the plots or if C++ computes the figure.
-std::string plots_of(const WantedFigure& wanted, const std::vector<ReadManifest>& manifests) {
+std::string plots_of(const WantedFigure& wanted, const std::vector<RegisteredManifest>& manifests) {
   const std::string& name = wanted.figure.name;
-  const auto manifest = std::ranges::find(manifests, wanted.experiment, &ReadManifest::experiment);
+  const auto manifest =
+      std::ranges::find(manifests, wanted.experiment, &RegisteredManifest::experiment);
   if (manifest == manifests.end() || find_named(computed_figures(), name) != nullptr ||
       find_named(std::span<const Figure>(stated_figures(manifest->content)), name) != nullptr) {
     return "";
@@ -191,8 +192,8 @@ std::string verdict_text(const ComputedFigure& figure) {
 /// manifest at this scale. A figure of all experiments uses all manifests. A manifest names a claim
 /// by the claim's id, with or without the value of `for_each`. Older manifests name a claim by its
 /// statement.
-void mark_primary(const std::vector<ReadManifest>& manifests, ComputedFigure& figure) {
-  for (const ReadManifest& manifest : manifests) {
+void mark_primary(const std::vector<RegisteredManifest>& manifests, ComputedFigure& figure) {
+  for (const RegisteredManifest& manifest : manifests) {
     if (!figure.experiment.empty() && manifest.experiment != figure.experiment) continue;
     for (const Scale& scale : scales_of(manifest.content)) {
       if (scale.name != figure.scale && !scale.name.empty()) continue;

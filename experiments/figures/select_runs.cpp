@@ -11,7 +11,6 @@
 #include <tuple>
 #include <utility>
 
-#include "experiments/manifest/manifest.hpp"
 #include "experiments/manifest/parameters.hpp"
 #include "experiments/manifest/suggest.hpp"
 #include "experiments/manifest/variants.hpp"
@@ -108,7 +107,7 @@ std::vector<std::string> with_members(const Store& store,
   if (experiments.empty()) return all;
   std::map<std::string, std::vector<std::string>> members;  // by registered experiment: key `of`
   for (const RegisteredManifest& one : newest_manifests(store)) {
-    members[one.experiment] = recorded_manifest(one.text).of;
+    members[one.experiment] = one.content.of;
   }
   for (const std::string& experiment : experiments) {
     const auto owns_runs = [&](const std::string& member) {
