@@ -2,7 +2,6 @@
 #include "experiments/figures/run_table.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +15,6 @@
 #include "experiments/manifest/suggest.hpp"
 #include "experiments/runner/outlook.hpp"
 #include "experiments/runner/registered.hpp"
-#include "provenance/json_text.hpp"
 #include "provenance/lineage.hpp"
 #include "provenance/words.hpp"
 

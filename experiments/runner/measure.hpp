@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/figure.hpp"
+#include "analysis/frame.hpp"
 #include "analysis/measures.hpp"
 #include "provenance/store.hpp"
 
