@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "experiments/figures/collect.hpp"
-#include "experiments/runner/measure_sources.hpp"
 #include "provenance/derived.hpp"
 #include "provenance/io/file.hpp"
 

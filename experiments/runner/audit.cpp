@@ -15,7 +15,7 @@
 #include "analysis/measures.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/schema.hpp"
-#include "experiments/runner/measure_sources.hpp"
+#include "experiments/runner/measure.hpp"
 #include "experiments/runner/stage.hpp"
 #include "provenance/derived.hpp"
 #include "provenance/events.hpp"
