@@ -64,19 +64,6 @@ Column column_of(const Measure& measure) {
           }};
 }
 
-std::vector<Column> names() {
-  return {
-      of_run("experiment", "name of the experiment",
-             [](const Run& s) { return s.place.experiment; }),
-      of_run("scale", "scale of the manifest",
-             [](const Run& s) { return scale_name(s.place.scale); }),
-      of_run("variant", "label of the variant in the manifest, or its swept values",
-             [](const Run& s) { return s.name; }),
-      of_run("run", "id of the run", [](const Run& s) { return s.stage.id; }),
-      of_run("seed", "seed of the random numbers", [](const Run& s) { return s.place.seed; }),
-  };
-}
-
 std::vector<Column> which_checkpoint() {
   return {of_checkpoint("cycle", "cycles since the shear began; for a stiffening, its steps",
                         [](const CheckpointRecord& c) { return c.cycle; }),
@@ -130,7 +117,16 @@ std::vector<Column> columns_of_runs(const std::vector<FrameRun>& runs) {
   for (const FrameRun& run : runs) {
     for (const auto& [key, value] : run.place.swept.items()) swept.insert(key);
   }
-  std::vector<Column> columns = names();
+  std::vector<Column> columns = {
+      of_run("experiment", "name of the experiment",
+             [](const Run& s) { return s.place.experiment; }),
+      of_run("scale", "scale of the manifest",
+             [](const Run& s) { return scale_name(s.place.scale); }),
+      of_run("variant", "label of the variant in the manifest, or its swept values",
+             [](const Run& s) { return s.name; }),
+      of_run("run", "id of the run", [](const Run& s) { return s.stage.id; }),
+      of_run("seed", "seed of the random numbers", [](const Run& s) { return s.place.seed; }),
+  };
   for (const Field& field : schema()) {
     if (!swept.contains(std::string(field.name))) continue;
     columns.push_back(of_run(field.name, field.doc, [&field](const FrameRun& run) {

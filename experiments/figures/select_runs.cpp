@@ -91,14 +91,6 @@ void note_shortened(const std::vector<Run>& runs, std::vector<std::string>& note
   }
 }
 
-}  // namespace
-
-Place first_place(const Stage& stage) {
-  return stage.memberships.empty() ? Place{} : stage.memberships.front().place;
-}
-
-namespace {
-
 /// Replaces each experiment whose manifest has the key `of` by the experiments listed in `of` that
 /// have runs of their own.
 std::vector<std::string> with_members(const Store& store,
@@ -160,6 +152,10 @@ std::vector<Run> select_runs(const Store& store, const RunSelection& selection) 
   require_found("variant", variant);
   require_found("seed", seed);
   return selected;
+}
+
+Place first_place(const Stage& stage) {
+  return stage.memberships.empty() ? Place{} : stage.memberships.front().place;
 }
 
 NewestRuns newest_runs(std::vector<Run> selected) {
