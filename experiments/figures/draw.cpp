@@ -27,24 +27,18 @@
 namespace shearcell {
 namespace {
 
-/// The checkpoints of the run that the figure used, in the order of steps. They include
-/// earlier checkpoints if a measure of the figure is a change between two checkpoints.
-std::vector<CheckpointRecord> used_checkpoints(const Store& store, const ComputedFigure& figure,
-                                               const FrameRun& run) {
-  std::set<std::string> own;
-  for (const CheckpointMeasures& c : run.checkpoints) own.insert(c.sha256);
-  std::vector<CheckpointRecord> records = store.checkpoints(run.stage.id, Listed::and_pruned);
-  std::erase_if(records, [&](const CheckpointRecord& c) {
-    return !own.contains(c.sha256) && !figure.earlier.contains(c.sha256);
-  });
-  return records;
-}
-
+/// The runs of the figure with the states that the figure used. These include the states of earlier
+/// checkpoints if a measure of the figure is a change between two checkpoints.
 nlohmann::json inputs_of(const Store& store, const ComputedFigure& figure,
                          const std::vector<FrameRun>& runs) {
   nlohmann::json list = nlohmann::json::array();
   for (const FrameRun& run : runs) {
-    const States states = states_of(used_checkpoints(store, figure, run));
+    std::vector<CheckpointRecord> used = store.checkpoints(run.stage.id, Listed::and_pruned);
+    std::erase_if(used, [&](const CheckpointRecord& c) {
+      return !std::ranges::binary_search(run.checkpoints, c.step, {}, &CheckpointMeasures::step) &&
+             !figure.earlier.contains(c.sha256);
+    });
+    const States states = states_of(used);
     list.push_back({{"run", run.stage.id},
                     {"parent", run.stage.parent},
                     {"experiment", run.place.experiment},
@@ -76,19 +70,6 @@ std::string plots_of(const WantedFigure& wanted, const std::vector<RegisteredMan
   return fmt::format("drawn by the plots of shearcell {}; the manifest {}",
                      host_facts().at("build").at("version").get<std::string>(),
                      lists ? "lists " + name + " only" : "does not name " + name);
-}
-
-/// The figure's record, without the facts that depend on time or host.
-nlohmann::json lineage_of(const ComputedFigure& figure, const std::string& plots,
-                          nlohmann::json inputs) {
-  nlohmann::json facts = {{"figure", figure.name},
-                          {"scale", figure.scale},
-                          {"analysis_version", analysis_version},
-                          {"inputs", std::move(inputs)},
-                          {"outputs", nlohmann::json::object()}};
-  if (!figure.experiment.empty()) facts["experiment"] = figure.experiment;
-  if (!plots.empty()) facts["plots"] = plots;
-  return facts;
 }
 
 /// Records the figure, unless its newest record has the same facts, apart from host and build.
@@ -223,7 +204,14 @@ void make_of_runs(const Store& store, const WantedFigure& wanted, const FigureOp
   }
   measure_runs(store, runs, providers, measuring, made);
   std::ranges::for_each(runs, leave_out_unmeasured);
-  made.lineage = lineage_of(made, plots_of(wanted, *frame.manifests), inputs_of(store, made, runs));
+  made.lineage = {{"figure", made.name},
+                  {"scale", made.scale},
+                  {"analysis_version", analysis_version},
+                  {"inputs", inputs_of(store, made, runs)},
+                  {"outputs", nlohmann::json::object()}};
+  if (!made.experiment.empty()) made.lineage["experiment"] = made.experiment;
+  const std::string plots = plots_of(wanted, *frame.manifests);
+  if (!plots.empty()) made.lineage["plots"] = plots;
   if (figure.form == FigureForm::groups) {
     require_told_apart(figure.name, pointers(runs), averaged_key(pointers(runs), figure.keys),
                        "make a separate experiment for each value, or define a plot "
