@@ -169,23 +169,21 @@ std::string verdict_text(const ComputedFigure& figure) {
   return verdict.dump(1) + "\n";
 }
 
-/// Sets ComputedFigure::primary and Verdict::primary from the key `primary` of the experiment's
-/// manifest at this scale. A figure of all experiments uses all manifests. A manifest names a claim
-/// by the claim's id, with or without the value of `for_each`. Older manifests name a claim by its
-/// statement.
+/// Sets Verdict::primary from the key `primary` of the experiment's manifest at this scale. A
+/// figure of all experiments uses all manifests. A manifest names a claim by the claim's id, with
+/// or without the value of `for_each`. Older manifests name a claim by its statement.
 void mark_primary(const std::vector<RegisteredManifest>& manifests, ComputedFigure& figure) {
   for (const RegisteredManifest& manifest : manifests) {
     if (!figure.experiment.empty() && manifest.experiment != figure.experiment) continue;
     for (const Scale& scale : scales_of(manifest.content)) {
       if (scale.name != figure.scale && !scale.name.empty()) continue;
-      std::ranges::transform(scale.primary, std::back_inserter(figure.primary), &PrimaryClaim::id);
+      for (Verdict& verdict : figure.verdicts) {
+        for (const PrimaryClaim& primary : scale.primary) {
+          verdict.primary |= primary.id == verdict.id || primary.id == verdict.claim ||
+                             primary.id == verdict.id.substr(0, verdict.id.find('@'));
+        }
+      }
     }
-  }
-  for (Verdict& verdict : figure.verdicts) {
-    verdict.primary = std::ranges::any_of(figure.primary, [&](const std::string& one) {
-      return one == verdict.id || one == verdict.claim ||
-             one == verdict.id.substr(0, verdict.id.find('@'));
-    });
   }
 }
 
