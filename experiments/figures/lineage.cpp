@@ -224,7 +224,6 @@ FigureLineage figure_lineage(const Store& store, const FigureRecord& record) {
   lineage.record = record;
   lineage.outputs = outputs_of(record.provenance);
   try {
-    lineage.experiment = record.provenance.value("experiment", "");
     lineage.scale = record.provenance.value("scale", "");
     lineage.plots = record.provenance.value("plots", "");
     for (const json& entry : record.provenance.at("inputs")) {
@@ -278,14 +277,13 @@ json to_json(const FigureLineage& lineage) {
                       {"checkpoints", checkpoints}});
   }
   for (const auto& [id, stage] : lineage.runs) stages.push_back(stage_json(stage));
-  const std::string& experiment = lineage.experiment;
   return {{"figure", figure_name(lineage.record)},
-          {"experiment", experiment.empty() ? json() : json(experiment)},
+          {"experiment", member_of(lineage.record.provenance, "experiment")},
           {"event", lineage.record.seq},
           {"recorded_at", lineage.record.recorded_at},
           {"scale", scale_name(lineage.scale)},
           {"analysis_version", member_of(lineage.record.provenance, "analysis_version")},
-          {"plots", lineage.plots.empty() ? json() : json(lineage.plots)},
+          {"plots", member_of(lineage.record.provenance, "plots")},
           {"made", member_of(lineage.record.provenance, "made")},
           {"outputs", lineage.outputs},
           {"manifests", manifests},
