@@ -274,14 +274,13 @@ void leave_out_unmeasured(FrameRun& run) {
   run.end = std::min(run.end, run.stage.cycle);
 }
 
-void measure_runs(const Store& store, std::vector<FrameRun>& runs,
-                  std::span<const std::string> providers, const MeasureOptions& options,
-                  MeasureOutcome& outcome) {
+MeasureOutcome measure_runs(const Store& store, std::vector<FrameRun>& runs,
+                            std::span<const std::string> providers, const MeasureOptions& options) {
   std::vector<ToMeasure> chosen;
   for (FrameRun& run : runs) {
     for (auto& one : run.checkpoints) chosen.push_back({&one, run.ask.checkpoint_every});
   }
-  outcome += measure_checkpoints(store, chosen, providers, options);
+  return measure_checkpoints(store, chosen, providers, options);
 }
 
 std::string WantedFigure::path() const {

@@ -62,10 +62,9 @@ std::vector<FrameRun> frame_runs(std::vector<Run> selected, std::vector<std::str
 void leave_out_unmeasured(FrameRun& run);
 
 /// Measures the checkpoints of the runs. Earlier checkpoints at whole cycles are used only at the
-/// interval that the run's experiment requests. Adds unreadable checkpoints to `outcome`.
-void measure_runs(const Store& store, std::vector<FrameRun>& runs,
-                  std::span<const std::string> providers, const MeasureOptions& options,
-                  MeasureOutcome& outcome);
+/// interval that the run's experiment requests.
+MeasureOutcome measure_runs(const Store& store, std::vector<FrameRun>& runs,
+                            std::span<const std::string> providers, const MeasureOptions& options);
 
 struct CollectedRuns : Frame {
   ReadManifests manifests;  ///< WantedFigure::manifests; if these are null, the store's manifests

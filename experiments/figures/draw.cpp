@@ -200,7 +200,7 @@ void make_of_runs(const Store& store, const WantedFigure& wanted, const FigureOp
     providers = figure.needs;
     providers.insert(providers.begin(), scalars_provider);
   }
-  measure_runs(store, runs, providers, measuring, made);
+  made += measure_runs(store, runs, providers, measuring);
   std::ranges::for_each(runs, leave_out_unmeasured);
   made.lineage = {{"figure", made.name},
                   {"scale", made.scale},

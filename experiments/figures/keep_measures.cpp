@@ -59,10 +59,10 @@ MeasureOutcome keep_measures(const Store& store, std::vector<CheckpointRecord>& 
         std::vector<std::string> names = figure.needs;
         names.insert(names.begin(), scalars_provider);
         std::vector<FrameRun> alone = {run};
-        measure_runs(store, alone, names, some, outcome);
+        outcome += measure_runs(store, alone, names, some);
       }
     }
-    measure_runs(store, runs, analyses, options, outcome);
+    outcome += measure_runs(store, runs, analyses, options);
     MeasureSources sources(store);
     sources.read_run(stage.id);
     for (const FrameRun& run : runs) {

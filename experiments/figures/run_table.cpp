@@ -233,7 +233,7 @@ RunTable curve_table(const Store& store, const RunSelection& selection, const Me
   const std::string provider = provider_of(measure).name;
   RunTable made;
   std::vector<FrameRun> runs = select(store, selection, options, made);
-  measure_runs(store, runs, {&provider, 1}, options, made);
+  made += measure_runs(store, runs, {&provider, 1}, options);
   note_lacking(runs, made);
   std::vector<Column> columns = columns_of_runs(runs);
   std::ranges::move(which_checkpoint(), std::back_inserter(columns));

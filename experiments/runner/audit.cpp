@@ -164,17 +164,6 @@ std::string wrong_measure(const Store& store, const CheckpointRecord& record,
   return "";
 }
 
-std::vector<CheckpointRecord> measured_checkpoints(const Store& store, DerivedCache& cache,
-                                                   MeasureSources& sources) {
-  std::vector<CheckpointRecord> found;
-  for (const Stage& stage : store.stages()) {
-    for (CheckpointRecord& record : store.checkpoints(stage.id)) {
-      if (!cached_measures(record, cache, sources).empty()) found.push_back(std::move(record));
-    }
-  }
-  return found;
-}
-
 void check_pruned(const Store& store, DerivedCache& cache, MeasureCheck& check) {
   MeasureSources sources(store);
   using Severity = Finding::Severity;
@@ -287,7 +276,12 @@ MeasureCheck check_measures(const Store& store, const std::filesystem::path& fol
                             std::size_t count, std::uint64_t seed) {
   DerivedCache cache(folder, Access::read);
   MeasureSources sources(store);
-  const std::vector<CheckpointRecord> cached = measured_checkpoints(store, cache, sources);
+  std::vector<CheckpointRecord> cached;  // checkpoints with cached measures
+  for (const Stage& stage : store.stages()) {
+    for (CheckpointRecord& record : store.checkpoints(stage.id)) {
+      if (!cached_measures(record, cache, sources).empty()) cached.push_back(std::move(record));
+    }
+  }
   const std::vector<CheckpointRecord> chosen = sample(cached, count, seed);
   MeasureCheck check{.cached = cached.size(), .computed = chosen.size()};
   for (const CheckpointRecord& record : chosen) {
