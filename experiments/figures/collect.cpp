@@ -16,6 +16,7 @@
 #include "experiments/manifest/shipped.hpp"
 #include "experiments/manifest/suggest.hpp"
 #include "experiments/manifest/variants.hpp"
+#include "experiments/runner/host.hpp"
 #include "experiments/runner/outlook.hpp"
 #include "experiments/runner/registered.hpp"
 #include "provenance/errors.hpp"
@@ -314,7 +315,12 @@ WantedFigures wanted_figures(const Store& store, const std::vector<std::string>&
       const bool lists = std::ranges::count(manifest.figures, figure.name) > 0;
       if (is_across(figure) || !asked(figure.name) || !(named || lists)) continue;
       if (find_named(std::span<const Figure>(stated), figure.name) != nullptr) continue;
-      wanted.figures.push_back({figure, manifest.experiment});
+      WantedFigure& made = wanted.figures.emplace_back(WantedFigure{figure, manifest.experiment});
+      if (find_named(computed_figures(), figure.name) != nullptr) continue;
+      made.plots =
+          fmt::format("drawn by the plots of shearcell {}; the manifest {}",
+                      host_facts().at("build").at("version").get<std::string>(),
+                      lists ? "lists " + figure.name + " only" : "does not name " + figure.name);
     }
     for (Figure& figure : stated) {
       known.insert(figure.name);

@@ -27,6 +27,9 @@ struct WantedFigure {
   /// The manifests of the store. All figures of one command share them, so that each manifest is
   /// read only once. If null, collect_runs() reads the manifests.
   ReadManifests manifests = {};
+  /// Names the version of this program if the program defines the figure's plots, because the
+  /// manifest does not. (Older manifests only list the name of the figure.) Otherwise "".
+  std::string plots = {};
 
   /// "drag/S2", for messages.
   std::string path() const;

@@ -55,23 +55,6 @@ nlohmann::json inputs_of(const Store& store, const ComputedFigure& figure,
   return list;
 }
 
-/// Names the version of this program if the program defines the figure's plots, because the
-/// manifest does not. (Older manifests only list the name of the figure.) Returns "" if the
-/// manifest defines the plots or if C++ computes the figure.
-std::string plots_of(const WantedFigure& wanted, const std::vector<RegisteredManifest>& manifests) {
-  const std::string& name = wanted.figure.name;
-  const auto manifest =
-      std::ranges::find(manifests, wanted.experiment, &RegisteredManifest::experiment);
-  if (manifest == manifests.end() || find_named(computed_figures(), name) != nullptr ||
-      find_named(std::span<const Figure>(stated_figures(manifest->content)), name) != nullptr) {
-    return "";
-  }
-  const bool lists = std::ranges::count(manifest->figures, name) > 0;
-  return fmt::format("drawn by the plots of shearcell {}; the manifest {}",
-                     host_facts().at("build").at("version").get<std::string>(),
-                     lists ? "lists " + name + " only" : "does not name " + name);
-}
-
 /// Records the figure, unless its newest record has the same facts, apart from host and build.
 void record(Store& store, const std::string& name, nlohmann::json facts) {
   for (const FigureRecord& known : store.figures()) {
@@ -208,8 +191,7 @@ void make_of_runs(const Store& store, const WantedFigure& wanted, const FigureOp
                   {"inputs", inputs_of(store, made, runs)},
                   {"outputs", nlohmann::json::object()}};
   if (!made.experiment.empty()) made.lineage["experiment"] = made.experiment;
-  const std::string plots = plots_of(wanted, *frame.manifests);
-  if (!plots.empty()) made.lineage["plots"] = plots;
+  if (!wanted.plots.empty()) made.lineage["plots"] = wanted.plots;
   if (figure.form == FigureForm::groups) {
     require_told_apart(figure.name, pointers(runs), averaged_key(pointers(runs), figure.keys),
                        "make a separate experiment for each value, or define a plot "

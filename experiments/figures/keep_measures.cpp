@@ -51,7 +51,7 @@ MeasureOutcome keep_measures(const Store& store, std::vector<CheckpointRecord>& 
       for (CheckpointRecord& own : store.checkpoints(stage.id)) {
         run.checkpoints.push_back({std::move(own)});
       }
-      for (const auto& [figure, experiment, also, manifests] : simulating) {
+      for (const auto& [figure, experiment, also, manifests, plots] : simulating) {
         if (experiment != place.experiment) continue;
         // Simulations are slow, so only the cycles that figures show are simulated.
         MeasureOptions some = options;
