@@ -87,7 +87,7 @@ struct CycleEnergies {
 };
 
 /// What providers know about the run of a checkpoint. The runner fills it in, since analysis does
-/// not depend on manifests and protocols (experiments/runner/measure_sources.hpp).
+/// not depend on manifests and protocols (experiments/runner/measure.hpp).
 struct RunFacts {
   nlohmann::json parameters = {};   ///< values by their keys in a manifest
   std::optional<Drive> drive = {};  ///< only of a shear

@@ -142,13 +142,6 @@ void measure_shares(const Packing& made, const Kernels& kernels, std::uint64_t s
       static_cast<double>(simulation.bytes()) / static_cast<double>(simulation.grains());
 }
 
-// Uses the times from the last call of measure_shares().
-void measure_limit(std::size_t lanes, SpeedResult& result) {
-  result.multiplications = multiplications(lanes, times.slots / times.blocks);
-  result.limit = 1e-6 * static_cast<double>(result.threads) * peak_multiplications(lanes) /
-                 result.multiplications;
-}
-
 void measure_rate(const Packing& made, const SimulationSettings& settings,
                   const SpeedOptions& options, SpeedResult& result) {
   Simulation simulation = simulate(made, settings);
@@ -194,7 +187,9 @@ void measure_size(std::size_t grains, const SpeedOptions& options,
                            static_cast<double>(grains * threads);
       measure_shares(made, *kernels,
                      std::max<std::uint64_t>(400, static_cast<std::uint64_t>(steps)), result);
-      measure_limit(kernels->lanes, result);
+      result.multiplications = multiplications(kernels->lanes, times.slots / times.blocks);
+      result.limit = 1e-6 * static_cast<double>(threads) * peak_multiplications(kernels->lanes) /
+                     result.multiplications;
       results.push_back(result);
     }
   }

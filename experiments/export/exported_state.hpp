@@ -10,7 +10,7 @@
 
 #include "experiments/figures/run_table.hpp"
 #include "experiments/runner/lammps/lammps_deck.hpp"
-#include "experiments/runner/measure_sources.hpp"
+#include "experiments/runner/measure.hpp"
 #include "experiments/runner/particles.hpp"
 #include "provenance/checkpoint.hpp"
 

@@ -16,6 +16,7 @@
 #include "experiments/manifest/shipped.hpp"
 #include "experiments/manifest/suggest.hpp"
 #include "experiments/manifest/variants.hpp"
+#include "experiments/runner/host.hpp"
 #include "experiments/runner/outlook.hpp"
 #include "experiments/runner/registered.hpp"
 #include "provenance/errors.hpp"
@@ -145,44 +146,34 @@ void name_variants(const std::vector<VariantLabel>& labels, const std::string& e
   }
 }
 
-/// The planned runs of the scale; empty if the sweep has more variants than ManifestLimits::runs.
-PlannedRuns plan_runs(const Manifest& manifest, const std::string& scale_name) {
-  PlannedRuns planned;
-  for (const Scale& scale : scales_of(manifest)) {
-    if (scale.name != scale_name || variant_count(scale.sweep) > ManifestLimits::runs) continue;
-    planned.seeds = scale.seeds.values;
-    planned.looks = scale.looks;
+/// Sets Frame::seeds and Frame::looks. Adds to Frame::pending the planned runs that are not yet
+/// declared. Does nothing if the sweep has more variants than ManifestLimits::runs.
+void add_planned(const RegisteredManifest& manifest, CollectedRuns& collected) {
+  std::set<std::pair<std::uint64_t, nlohmann::json>> declared;
+  for (const FrameRun& run : collected.runs) {
+    if (run.place.experiment == manifest.experiment) {
+      declared.emplace(run.place.seed, run.place.swept);
+    }
+  }
+  for (const Scale& scale : scales_of(manifest.content)) {
+    if (scale.name != collected.scale || variant_count(scale.sweep) > ManifestLimits::runs)
+      continue;
+    const std::vector<std::uint64_t>& seeds = scale.seeds.values;
+    collected.looks = scale.looks;
+    std::ranges::copy_if(seeds, std::back_inserter(collected.seeds), [&](std::uint64_t seed) {
+      return std::ranges::count(collected.seeds, seed) == 0;
+    });
     const std::vector<Variant> variants = variants_of(scale);
-    const std::vector<FrameRun> runs = planned_runs(manifest, scale, variants);
+    const std::vector<FrameRun> runs = planned_runs(manifest.content, scale, variants);
     for (std::size_t k = 0; k < variants.size(); ++k) {
-      for (const std::uint64_t seed : planned.seeds | std::views::take(variants[k].seeds)) {
-        planned.runs.push_back(runs[k]);
-        planned.runs.back().place.seed = seed;
-        planned.runs.back().stage.id += fmt::format(" seed {}", seed);
+      for (const std::uint64_t seed : seeds | std::views::take(variants[k].seeds)) {
+        if (declared.contains({seed, runs[k].place.swept})) continue;
+        FrameRun& run = collected.pending.emplace_back(runs[k]);
+        run.place.seed = seed;
+        run.stage.id += fmt::format(" seed {}", seed);
       }
     }
   }
-  return planned;
-}
-
-/// Sets Frame::seeds and Frame::looks. Adds to Frame::pending the planned runs that are not yet
-/// declared.
-void add_planned(const ReadManifest& manifest, CollectedRuns& collected) {
-  const auto [known, fresh] = manifest.planned.try_emplace(collected.scale);
-  if (fresh) known->second = plan_runs(manifest.content, collected.scale);
-  const PlannedRuns& planned = known->second;
-  std::set<std::pair<std::uint64_t, nlohmann::json>> declared;
-  for (const FrameRun& run : collected.runs) {
-    if (run.place.experiment != manifest.experiment) continue;
-    declared.emplace(run.place.seed, run.place.swept);
-  }
-  for (const std::uint64_t seed : planned.seeds) {
-    if (std::ranges::count(collected.seeds, seed) == 0) collected.seeds.push_back(seed);
-  }
-  if (!planned.seeds.empty()) collected.looks = planned.looks;
-  std::ranges::copy_if(planned.runs, std::back_inserter(collected.pending), [&](const auto& run) {
-    return !declared.contains({run.place.seed, run.place.swept});
-  });
 }
 
 /// Adds the name of the experiment to the swept values, to the variant and to the name of the run.
@@ -232,9 +223,10 @@ std::vector<Run> runs_of(const Store& store, const WantedFigure& wanted,
 
 /// The scale of the run that was declared last. Runs of older manifest versions are considered only
 /// if no run belongs to a newest version.
-std::string last_scale(const std::vector<Run>& runs, const std::vector<ReadManifest>& manifests) {
+std::string last_scale(const std::vector<Run>& runs,
+                       const std::vector<RegisteredManifest>& manifests) {
   const auto is_newest = [&](const Run& run) {
-    return std::ranges::count(manifests, run.place.manifest, &ReadManifest::sha256) > 0;
+    return std::ranges::count(manifests, run.place.manifest, &RegisteredManifest::sha256) > 0;
   };
   const auto last = std::ranges::find_if(runs.rbegin(), runs.rend(), is_newest);
   return (last == runs.rend() ? runs.back() : *last).place.scale;
@@ -259,11 +251,7 @@ void share_needs(std::vector<WantedFigure>& figures) {
 }
 
 ReadManifests read_manifests(const Store& store) {
-  std::vector<ReadManifest> read;
-  for (const RegisteredManifest& one : newest_manifests(store)) {
-    read.push_back({one, recorded_manifest(one.text)});
-  }
-  return std::make_shared<const std::vector<ReadManifest>>(std::move(read));
+  return std::make_shared<const std::vector<RegisteredManifest>>(newest_manifests(store));
 }
 
 }  // namespace
@@ -287,14 +275,13 @@ void leave_out_unmeasured(FrameRun& run) {
   run.end = std::min(run.end, run.stage.cycle);
 }
 
-void measure_runs(const Store& store, std::vector<FrameRun>& runs,
-                  std::span<const std::string> providers, const MeasureOptions& options,
-                  MeasureOutcome& outcome) {
+MeasureOutcome measure_runs(const Store& store, std::vector<FrameRun>& runs,
+                            std::span<const std::string> providers, const MeasureOptions& options) {
   std::vector<ToMeasure> chosen;
   for (FrameRun& run : runs) {
     for (auto& one : run.checkpoints) chosen.push_back({&one, run.ask.checkpoint_every});
   }
-  outcome += measure_checkpoints(store, chosen, providers, options);
+  return measure_checkpoints(store, chosen, providers, options);
 }
 
 std::string WantedFigure::path() const {
@@ -304,9 +291,9 @@ std::string WantedFigure::path() const {
 WantedFigures wanted_figures(const Store& store, const std::vector<std::string>& names,
                              const std::vector<std::string>& experiments) {
   const ReadManifests read = read_manifests(store);
-  const std::vector<ReadManifest>& manifests = *read;
+  const std::vector<RegisteredManifest>& manifests = *read;
   std::vector<std::string_view> registered;
-  for (const ReadManifest& manifest : manifests) registered.emplace_back(manifest.experiment);
+  for (const RegisteredManifest& manifest : manifests) registered.emplace_back(manifest.experiment);
   for (const std::string& experiment : experiments) {
     if (std::ranges::count(registered, experiment) == 0) {
       throw NotFound(unknown_name("experiment", experiment, registered));
@@ -321,14 +308,19 @@ WantedFigures wanted_figures(const Store& store, const std::vector<std::string>&
   std::vector<std::string_view> supplement;
   for (const Figure& figure : all_figures()) supplement.emplace_back(figure.name);
   std::set<std::string> known(supplement.begin(), supplement.end()), reported;
-  for (const ReadManifest& manifest : manifests) {
+  for (const RegisteredManifest& manifest : manifests) {
     if (!among(experiments, manifest.experiment)) continue;
     std::vector<Figure> stated = stated_figures(manifest.content);
     for (const Figure& figure : all_figures()) {
       const bool lists = std::ranges::count(manifest.figures, figure.name) > 0;
       if (is_across(figure) || !asked(figure.name) || !(named || lists)) continue;
       if (find_named(std::span<const Figure>(stated), figure.name) != nullptr) continue;
-      wanted.figures.push_back({figure, manifest.experiment});
+      WantedFigure& made = wanted.figures.emplace_back(WantedFigure{figure, manifest.experiment});
+      if (find_named(computed_figures(), figure.name) != nullptr) continue;
+      made.plots =
+          fmt::format("drawn by the plots of shearcell {}; the manifest {}",
+                      host_facts().at("build").at("version").get<std::string>(),
+                      lists ? "lists " + figure.name + " only" : "does not name " + figure.name);
     }
     for (Figure& figure : stated) {
       known.insert(figure.name);
@@ -344,7 +336,7 @@ WantedFigures wanted_figures(const Store& store, const std::vector<std::string>&
     if (!is_across(figure) || manifests.empty() || !asked(figure.name)) continue;
     // Without `names`, table1 is drawn if a manifest lists figures of the supplement, and a figure
     // that compares experiments is drawn if the store has two or more experiments that it compares.
-    const auto lists_any = [](const ReadManifest& one) { return !one.figures.empty(); };
+    const auto lists_any = [](const RegisteredManifest& one) { return !one.figures.empty(); };
     const auto registers = [&](const std::string& of) { return among(registered, of); };
     const bool has_runs = figure.of.empty() ? std::ranges::any_of(manifests, lists_any)
                                             : std::ranges::count_if(figure.of, registers) > 1;
@@ -379,7 +371,7 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
                            const RunSelection& selection, const MeasureOptions& measuring) {
   CollectedRuns collected;
   collected.manifests = wanted.manifests ? wanted.manifests : read_manifests(store);
-  const std::vector<ReadManifest>& manifests = *collected.manifests;
+  const std::vector<RegisteredManifest>& manifests = *collected.manifests;
   std::vector<Run> selected = runs_of(store, wanted, selection);
   collected.scale = last_scale(selected, manifests);
   std::set<std::string> at_scale, elsewhere;  // names of experiments
@@ -411,7 +403,7 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
     std::set<std::string> experiments;
     for (const FrameRun& run : collected.runs) experiments.insert(run.place.experiment);
     const bool all_seeds = selection.seeds.empty() && selection.variants.empty();
-    for (const ReadManifest& manifest : manifests) {
+    for (const RegisteredManifest& manifest : manifests) {
       if (!experiments.contains(manifest.experiment)) continue;
       name_variants(manifest.content.labels, manifest.experiment, collected);
       if (all_seeds) add_planned(manifest, collected);
@@ -429,11 +421,7 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
   }
   add_checkpoints(store, wanted.figure, measuring, collected);
   for (const FrameRun& run : collected.runs) {
-    const nlohmann::json& resolved = run.stage.resolved;
-    if (resolved.is_object() &&
-        resolved.value("parameters", nlohmann::json::object()).is_object()) {
-      continue;
-    }
+    if (member_of(run.stage.resolved, "parameters").is_object()) continue;
     throw StoreDamaged(fmt::format(
         "the record of run {:.8} has no parameters; `shearcell verify` reports all damage",
         run.stage.id));

@@ -2,7 +2,6 @@
 // Selects the runs and checkpoints of a store that belong to a figure.
 #pragma once
 
-#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -17,19 +16,8 @@
 
 namespace shearcell {
 
-/// The runs that a manifest plans at one scale.
-struct PlannedRuns {
-  std::vector<FrameRun> runs;        ///< one for each variant and seed
-  std::vector<std::uint64_t> seeds;  ///< in the order of the manifest
-  std::vector<std::size_t> looks;
-};
-
-/// A registered manifest in its newest version. `content` is its parsed text.
-struct ReadManifest : RegisteredManifest {
-  Manifest content;
-  mutable std::map<std::string, PlannedRuns> planned = {};  ///< by scale; filled on demand
-};
-using ReadManifests = std::shared_ptr<const std::vector<ReadManifest>>;
+/// The newest_manifests() of a store.
+using ReadManifests = std::shared_ptr<const std::vector<RegisteredManifest>>;
 
 struct WantedFigure {
   Figure figure;
@@ -37,8 +25,11 @@ struct WantedFigure {
   /// Providers that other figures of the experiment need, for MeasureOptions::also.
   std::vector<std::string> also = {};
   /// The manifests of the store. All figures of one command share them, so that each manifest is
-  /// read and expanded only once. If null, collect_runs() reads the manifests.
+  /// read only once. If null, collect_runs() reads the manifests.
   ReadManifests manifests = {};
+  /// Names the version of this program if the program defines the figure's plots, because the
+  /// manifest does not. (Older manifests only list the name of the figure.) Otherwise "".
+  std::string plots = {};
 
   /// "drag/S2", for messages.
   std::string path() const;
@@ -74,10 +65,9 @@ std::vector<FrameRun> frame_runs(std::vector<Run> selected, std::vector<std::str
 void leave_out_unmeasured(FrameRun& run);
 
 /// Measures the checkpoints of the runs. Earlier checkpoints at whole cycles are used only at the
-/// interval that the run's experiment requests. Adds unreadable checkpoints to `outcome`.
-void measure_runs(const Store& store, std::vector<FrameRun>& runs,
-                  std::span<const std::string> providers, const MeasureOptions& options,
-                  MeasureOutcome& outcome);
+/// interval that the run's experiment requests.
+MeasureOutcome measure_runs(const Store& store, std::vector<FrameRun>& runs,
+                            std::span<const std::string> providers, const MeasureOptions& options);
 
 struct CollectedRuns : Frame {
   ReadManifests manifests;  ///< WantedFigure::manifests; if these are null, the store's manifests

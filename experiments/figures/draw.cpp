@@ -27,24 +27,18 @@
 namespace shearcell {
 namespace {
 
-/// The checkpoints of the run that the figure used, in the order of steps. They include
-/// earlier checkpoints if a measure of the figure is a change between two checkpoints.
-std::vector<CheckpointRecord> used_checkpoints(const Store& store, const ComputedFigure& figure,
-                                               const FrameRun& run) {
-  std::set<std::string> own;
-  for (const CheckpointMeasures& c : run.checkpoints) own.insert(c.sha256);
-  std::vector<CheckpointRecord> records = store.checkpoints(run.stage.id, Listed::and_pruned);
-  std::erase_if(records, [&](const CheckpointRecord& c) {
-    return !own.contains(c.sha256) && !figure.earlier.contains(c.sha256);
-  });
-  return records;
-}
-
+/// The runs of the figure with the states that the figure used. These include the states of earlier
+/// checkpoints if a measure of the figure is a change between two checkpoints.
 nlohmann::json inputs_of(const Store& store, const ComputedFigure& figure,
                          const std::vector<FrameRun>& runs) {
   nlohmann::json list = nlohmann::json::array();
   for (const FrameRun& run : runs) {
-    const States states = states_of(used_checkpoints(store, figure, run));
+    std::vector<CheckpointRecord> used = store.checkpoints(run.stage.id, Listed::and_pruned);
+    std::erase_if(used, [&](const CheckpointRecord& c) {
+      return !std::ranges::binary_search(run.checkpoints, c.step, {}, &CheckpointMeasures::step) &&
+             !figure.earlier.contains(c.sha256);
+    });
+    const States states = states_of(used);
     list.push_back({{"run", run.stage.id},
                     {"parent", run.stage.parent},
                     {"experiment", run.place.experiment},
@@ -59,35 +53,6 @@ nlohmann::json inputs_of(const Store& store, const ComputedFigure& figure,
     }
   }
   return list;
-}
-
-/// Names the version of this program if the program defines the figure's plots, because the
-/// manifest does not. (Older manifests only list the name of the figure.) Returns "" if the
-/// manifest defines the plots or if C++ computes the figure.
-std::string plots_of(const WantedFigure& wanted, const std::vector<ReadManifest>& manifests) {
-  const std::string& name = wanted.figure.name;
-  const auto manifest = std::ranges::find(manifests, wanted.experiment, &ReadManifest::experiment);
-  if (manifest == manifests.end() || find_named(computed_figures(), name) != nullptr ||
-      find_named(std::span<const Figure>(stated_figures(manifest->content)), name) != nullptr) {
-    return "";
-  }
-  const bool lists = std::ranges::count(manifest->figures, name) > 0;
-  return fmt::format("drawn by the plots of shearcell {}; the manifest {}",
-                     host_facts().at("build").at("version").get<std::string>(),
-                     lists ? "lists " + name + " only" : "does not name " + name);
-}
-
-/// The figure's record, without the facts that depend on time or host.
-nlohmann::json lineage_of(const ComputedFigure& figure, const std::string& plots,
-                          nlohmann::json inputs) {
-  nlohmann::json facts = {{"figure", figure.name},
-                          {"scale", figure.scale},
-                          {"analysis_version", analysis_version},
-                          {"inputs", std::move(inputs)},
-                          {"outputs", nlohmann::json::object()}};
-  if (!figure.experiment.empty()) facts["experiment"] = figure.experiment;
-  if (!plots.empty()) facts["plots"] = plots;
-  return facts;
 }
 
 /// Records the figure, unless its newest record has the same facts, apart from host and build.
@@ -187,33 +152,21 @@ std::string verdict_text(const ComputedFigure& figure) {
   return verdict.dump(1) + "\n";
 }
 
-/// The title of the figure. If the runs differ only in parameters that the figure does not compare,
-/// the title names these parameters.
-std::string title_of(const Figure& figure, const std::vector<FrameRun>& runs) {
-  const std::vector<std::string> varied = varied_keys(runs);
-  const bool of_its_keys = std::ranges::any_of(
-      varied, [&](const std::string& key) { return std::ranges::count(figure.keys, key) > 0; });
-  if (figure.keys.empty() || varied.empty() || of_its_keys) return figure.title;
-  return fmt::format("{} (these runs differ in {})", figure.title, fmt::join(varied, ", "));
-}
-
-/// Sets ComputedFigure::primary and Verdict::primary from the key `primary` of the experiment's
-/// manifest at this scale. A figure of all experiments uses all manifests. A manifest names a claim
-/// by the claim's id, with or without the value of `for_each`. Older manifests name a claim by its
-/// statement.
-void mark_primary(const std::vector<ReadManifest>& manifests, ComputedFigure& figure) {
-  for (const ReadManifest& manifest : manifests) {
+/// Sets Verdict::primary from the key `primary` of the experiment's manifest at this scale. A
+/// figure of all experiments uses all manifests. A manifest names a claim by the claim's id, with
+/// or without the value of `for_each`. Older manifests name a claim by its statement.
+void mark_primary(const std::vector<RegisteredManifest>& manifests, ComputedFigure& figure) {
+  for (const RegisteredManifest& manifest : manifests) {
     if (!figure.experiment.empty() && manifest.experiment != figure.experiment) continue;
     for (const Scale& scale : scales_of(manifest.content)) {
       if (scale.name != figure.scale && !scale.name.empty()) continue;
-      std::ranges::transform(scale.primary, std::back_inserter(figure.primary), &PrimaryClaim::id);
+      for (Verdict& verdict : figure.verdicts) {
+        for (const PrimaryClaim& primary : scale.primary) {
+          verdict.primary |= primary.id == verdict.id || primary.id == verdict.claim ||
+                             primary.id == verdict.id.substr(0, verdict.id.find('@'));
+        }
+      }
     }
-  }
-  for (Verdict& verdict : figure.verdicts) {
-    verdict.primary = std::ranges::any_of(figure.primary, [&](const std::string& one) {
-      return one == verdict.id || one == verdict.claim ||
-             one == verdict.id.substr(0, verdict.id.find('@'));
-    });
   }
 }
 
@@ -230,15 +183,20 @@ void make_of_runs(const Store& store, const WantedFigure& wanted, const FigureOp
     providers = figure.needs;
     providers.insert(providers.begin(), scalars_provider);
   }
-  measure_runs(store, runs, providers, measuring, made);
+  made += measure_runs(store, runs, providers, measuring);
   std::ranges::for_each(runs, leave_out_unmeasured);
-  made.lineage = lineage_of(made, plots_of(wanted, *frame.manifests), inputs_of(store, made, runs));
+  made.lineage = {{"figure", made.name},
+                  {"scale", made.scale},
+                  {"analysis_version", analysis_version},
+                  {"inputs", inputs_of(store, made, runs)},
+                  {"outputs", nlohmann::json::object()}};
+  if (!made.experiment.empty()) made.lineage["experiment"] = made.experiment;
+  if (!wanted.plots.empty()) made.lineage["plots"] = wanted.plots;
   if (figure.form == FigureForm::groups) {
     require_told_apart(figure.name, pointers(runs), averaged_key(pointers(runs), figure.keys),
                        "make a separate experiment for each value, or define a plot "
                        "in the manifest (`plots`)");
   }
-  made.title = title_of(figure, runs);
   for (const FrameRun& run : runs) ++made.runs_by_variant[run.name];
   const std::vector<const FrameRun*> counted_once = all_runs_with(nlohmann::json::object(), runs);
   made.runs = counted_once.size();

@@ -9,22 +9,11 @@
 #include <utility>
 
 #include "experiments/figures/collect.hpp"
-#include "experiments/runner/measure_sources.hpp"
 #include "provenance/derived.hpp"
 #include "provenance/io/file.hpp"
 
 namespace shearcell {
 namespace {
-
-constexpr std::size_t kAtOnce = 500;  // a batch is measured when it has this many checkpoints
-
-/// Whether the provider needs the file of an earlier checkpoint that is already pruned, for example
-/// because a pruned run was continued. In this case the measure was lost with the earlier file.
-bool needs_a_pruned_file(const MeasureSources& sources, const CheckpointRecord& record,
-                         std::uint64_t every, const Provider& provider) {
-  const CheckpointRecord* earlier = sources.earlier(record, provider, every);
-  return earlier != nullptr && earlier->state == CheckpointState::pruned;
-}
 
 /// Syncs the cache to the disk. DerivedCache itself does not sync, because lost measures can
 /// usually be computed again. After a prune this is impossible.
@@ -50,38 +39,19 @@ MeasureOutcome keep_measures(const Store& store, std::vector<CheckpointRecord>& 
     });
   });
   MeasureOutcome outcome;
-  std::set<std::string> unmeasured;  // SHA-256
-  std::vector<FrameRun> batch;
-  std::size_t in_batch = 0;  // checkpoints
-  const auto measure_batch = [&] {
-    measure_runs(store, batch, analyses, options, outcome);
-    MeasureSources sources(store);
-    for (const FrameRun& run : batch) {
-      sources.read_run(run.stage.id);
-      for (const CheckpointMeasures& one : run.checkpoints) {
-        for (const std::string& name : one.lacking) {
-          if (needs_a_pruned_file(sources, one, run.ask.checkpoint_every, provider(name))) continue;
-          unmeasured.insert(one.sha256);
-        }
-      }
-    }
-    batch.clear();
-    in_batch = 0;
-  };
-  std::set<std::string> seen;
+  std::set<std::string> seen, unmeasured;  // ids of runs; SHA-256 of checkpoints
   for (const CheckpointRecord& record : records) {
     if (!seen.insert(record.run).second) continue;
     Stage stage = store.stage(record.run);
     if (stage.memberships.empty())
       stage.memberships.emplace_back();  // damaged store: no experiment declared the stage
+    std::vector<FrameRun> runs;          // one for each experiment
     for (const auto& [place, ask, newest] : stage.memberships) {
-      FrameRun run{{place, ask, stage}};
+      FrameRun& run = runs.emplace_back(FrameRun{{place, ask, stage}});
       for (CheckpointRecord& own : store.checkpoints(stage.id)) {
         run.checkpoints.push_back({std::move(own)});
       }
-      in_batch += run.checkpoints.size();
-      batch.push_back(run);
-      for (const auto& [figure, experiment, also, manifests] : simulating) {
+      for (const auto& [figure, experiment, also, manifests, plots] : simulating) {
         if (experiment != place.experiment) continue;
         // Simulations are slow, so only the cycles that figures show are simulated.
         MeasureOptions some = options;
@@ -89,12 +59,24 @@ MeasureOutcome keep_measures(const Store& store, std::vector<CheckpointRecord>& 
         std::vector<std::string> names = figure.needs;
         names.insert(names.begin(), scalars_provider);
         std::vector<FrameRun> alone = {run};
-        measure_runs(store, alone, names, some, outcome);
+        outcome += measure_runs(store, alone, names, some);
       }
     }
-    if (in_batch >= kAtOnce) measure_batch();
+    outcome += measure_runs(store, runs, analyses, options);
+    MeasureSources sources(store);
+    sources.read_run(stage.id);
+    for (const FrameRun& run : runs) {
+      for (const CheckpointMeasures& one : run.checkpoints) {
+        for (const std::string& name : one.lacking) {
+          // If the provider needs the file of an earlier checkpoint that is already pruned (a
+          // pruned run was continued), the measure was lost with the earlier file.
+          const auto* earlier = sources.earlier(one, provider(name), run.ask.checkpoint_every);
+          const bool lost = earlier != nullptr && earlier->state == CheckpointState::pruned;
+          if (!lost) unmeasured.insert(one.sha256);
+        }
+      }
+    }
   }
-  measure_batch();
   std::erase_if(records, [&](const CheckpointRecord& c) {
     return !outcome.cache_trouble.empty() || unmeasured.contains(c.sha256);
   });

@@ -18,18 +18,6 @@ namespace {
 
 using nlohmann::json;
 
-/// Reads an input run from the figure's record, except FigureInput::states.
-FigureInput read_input(const json& input) {
-  FigureInput result;
-  input.at("run").get_to(result.run);
-  input.at("experiment").get_to(result.experiment);
-  input.at("variant").get_to(result.variant);
-  result.seed = count_at(input, "seed");
-  input.at("manifest").get_to(result.manifest);
-  result.overrides = input.value("overrides", json());
-  return result;
-}
-
 /// Cycles that differ by less than this are treated as equal. A time step is much longer.
 constexpr double kSameCycle = 1e-9;
 
@@ -69,7 +57,15 @@ std::vector<CheckpointRecord> at_cycles(const RunLineage& run, const Cycles& cyc
   return all;
 }
 
-void find_states(const json& entry, const RunLineage& run, FigureInput& input) {
+/// Reads an input run from the figure's record. Sets everything except FigureInput::lines.
+FigureInput read_input(const json& entry, const RunLineage& run) {
+  FigureInput input;
+  input.run = run.stage.id;
+  entry.at("experiment").get_to(input.experiment);
+  entry.at("variant").get_to(input.variant);
+  input.seed = count_at(entry, "seed");
+  entry.at("manifest").get_to(input.manifest);
+  input.overrides = entry.value("overrides", json());
   std::vector<CheckpointRecord> found;
   if (entry.contains("checkpoints")) {  // a record of an earlier version
     entry.at("checkpoints").get_to(input.checkpoints);
@@ -78,13 +74,14 @@ void find_states(const json& entry, const RunLineage& run, FigureInput& input) {
     }
     input.states = states_of(found);
     if (found.size() < input.checkpoints.size()) input.fault = "the log lacks some checkpoints";
-    return;
+    return input;
   }
   input.states = {entry.at("cycles"), entry.at("state_hash"), entry.at("states_sha256")};
   found = at_cycles(run, input.states.cycles);
   for (const CheckpointRecord& record : found) input.checkpoints.push_back(record.sha256);
   if (states_of(found) != input.states)
     input.fault = "the states in the log differ from the figure's record";
+  return input;
 }
 
 // The swept values of the run, from the version of the manifest that the figure used.
@@ -227,14 +224,13 @@ FigureLineage figure_lineage(const Store& store, const FigureRecord& record) {
   lineage.record = record;
   lineage.outputs = outputs_of(record.provenance);
   try {
-    lineage.experiment = record.provenance.value("experiment", "");
     lineage.scale = record.provenance.value("scale", "");
     lineage.plots = record.provenance.value("plots", "");
     for (const json& entry : record.provenance.at("inputs")) {
-      FigureInput input = read_input(entry);
-      add_run_lineage(store, input.run, lineage.runs);
-      const RunLineage& run = lineage.runs.at(input.run);
-      find_states(entry, run, input);
+      const std::string id = entry.at("run");
+      add_run_lineage(store, id, lineage.runs);
+      const RunLineage& run = lineage.runs.at(id);
+      FigureInput input = read_input(entry, run);
       if (const auto* manifest = remember_manifest(store, lineage, input.manifest)) {
         input.lines = manifest_lines(manifest->text, lineage.scale,
                                      swept_values_of(run.stage, input), figure_name(record));
@@ -281,14 +277,13 @@ json to_json(const FigureLineage& lineage) {
                       {"checkpoints", checkpoints}});
   }
   for (const auto& [id, stage] : lineage.runs) stages.push_back(stage_json(stage));
-  const std::string& experiment = lineage.experiment;
   return {{"figure", figure_name(lineage.record)},
-          {"experiment", experiment.empty() ? json() : json(experiment)},
+          {"experiment", member_of(lineage.record.provenance, "experiment")},
           {"event", lineage.record.seq},
           {"recorded_at", lineage.record.recorded_at},
           {"scale", scale_name(lineage.scale)},
           {"analysis_version", member_of(lineage.record.provenance, "analysis_version")},
-          {"plots", lineage.plots.empty() ? json() : json(lineage.plots)},
+          {"plots", member_of(lineage.record.provenance, "plots")},
           {"made", member_of(lineage.record.provenance, "made")},
           {"outputs", lineage.outputs},
           {"manifests", manifests},

@@ -51,7 +51,6 @@ struct FigureInput {
 
 struct FigureLineage {
   FigureRecord record;
-  std::string experiment;  ///< "" for a figure of all experiments
   std::string scale;
   std::string plots;  ///< "drawn by the plots of ...", or "" if the manifest defines the plots
   std::vector<FigureInput> inputs;

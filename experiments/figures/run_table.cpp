@@ -2,7 +2,6 @@
 #include "experiments/figures/run_table.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +15,6 @@
 #include "experiments/manifest/suggest.hpp"
 #include "experiments/runner/outlook.hpp"
 #include "experiments/runner/registered.hpp"
-#include "provenance/json_text.hpp"
 #include "provenance/lineage.hpp"
 #include "provenance/words.hpp"
 
@@ -64,19 +62,6 @@ Column column_of(const Measure& measure) {
             const bool count = measure.kind == MeasureKind::count && std::isfinite(value);
             return count ? TableCell(static_cast<std::int64_t>(value)) : number(value);
           }};
-}
-
-std::vector<Column> names() {
-  return {
-      of_run("experiment", "name of the experiment",
-             [](const Run& s) { return s.place.experiment; }),
-      of_run("scale", "scale of the manifest",
-             [](const Run& s) { return scale_name(s.place.scale); }),
-      of_run("variant", "label of the variant in the manifest, or its swept values",
-             [](const Run& s) { return s.name; }),
-      of_run("run", "id of the run", [](const Run& s) { return s.stage.id; }),
-      of_run("seed", "seed of the random numbers", [](const Run& s) { return s.place.seed; }),
-  };
 }
 
 std::vector<Column> which_checkpoint() {
@@ -132,7 +117,16 @@ std::vector<Column> columns_of_runs(const std::vector<FrameRun>& runs) {
   for (const FrameRun& run : runs) {
     for (const auto& [key, value] : run.place.swept.items()) swept.insert(key);
   }
-  std::vector<Column> columns = names();
+  std::vector<Column> columns = {
+      of_run("experiment", "name of the experiment",
+             [](const Run& s) { return s.place.experiment; }),
+      of_run("scale", "scale of the manifest",
+             [](const Run& s) { return scale_name(s.place.scale); }),
+      of_run("variant", "label of the variant in the manifest, or its swept values",
+             [](const Run& s) { return s.name; }),
+      of_run("run", "id of the run", [](const Run& s) { return s.stage.id; }),
+      of_run("seed", "seed of the random numbers", [](const Run& s) { return s.place.seed; }),
+  };
   for (const Field& field : schema()) {
     if (!swept.contains(std::string(field.name))) continue;
     columns.push_back(of_run(field.name, field.doc, [&field](const FrameRun& run) {
@@ -239,7 +233,7 @@ RunTable curve_table(const Store& store, const RunSelection& selection, const Me
   const std::string provider = provider_of(measure).name;
   RunTable made;
   std::vector<FrameRun> runs = select(store, selection, options, made);
-  measure_runs(store, runs, {&provider, 1}, options, made);
+  made += measure_runs(store, runs, {&provider, 1}, options);
   note_lacking(runs, made);
   std::vector<Column> columns = columns_of_runs(runs);
   std::ranges::move(which_checkpoint(), std::back_inserter(columns));

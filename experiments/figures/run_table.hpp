@@ -3,7 +3,6 @@
 // each swept parameter and each scalar measure.
 #pragma once
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>

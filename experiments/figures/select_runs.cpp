@@ -11,7 +11,6 @@
 #include <tuple>
 #include <utility>
 
-#include "experiments/manifest/manifest.hpp"
 #include "experiments/manifest/parameters.hpp"
 #include "experiments/manifest/suggest.hpp"
 #include "experiments/manifest/variants.hpp"
@@ -92,14 +91,6 @@ void note_shortened(const std::vector<Run>& runs, std::vector<std::string>& note
   }
 }
 
-}  // namespace
-
-Place first_place(const Stage& stage) {
-  return stage.memberships.empty() ? Place{} : stage.memberships.front().place;
-}
-
-namespace {
-
 /// Replaces each experiment whose manifest has the key `of` by the experiments listed in `of` that
 /// have runs of their own.
 std::vector<std::string> with_members(const Store& store,
@@ -108,7 +99,7 @@ std::vector<std::string> with_members(const Store& store,
   if (experiments.empty()) return all;
   std::map<std::string, std::vector<std::string>> members;  // by registered experiment: key `of`
   for (const RegisteredManifest& one : newest_manifests(store)) {
-    members[one.experiment] = recorded_manifest(one.text).of;
+    members[one.experiment] = one.content.of;
   }
   for (const std::string& experiment : experiments) {
     const auto owns_runs = [&](const std::string& member) {
@@ -161,6 +152,10 @@ std::vector<Run> select_runs(const Store& store, const RunSelection& selection) 
   require_found("variant", variant);
   require_found("seed", seed);
   return selected;
+}
+
+Place first_place(const Stage& stage) {
+  return stage.memberships.empty() ? Place{} : stage.memberships.front().place;
 }
 
 NewestRuns newest_runs(std::vector<Run> selected) {

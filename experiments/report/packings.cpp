@@ -13,7 +13,6 @@
 #include "experiments/manifest/suggest.hpp"
 #include "experiments/report/html.hpp"
 #include "experiments/runner/measure.hpp"
-#include "experiments/runner/measure_sources.hpp"
 #include "experiments/runner/outlook.hpp"
 #include "experiments/runner/registered.hpp"
 #include "provenance/errors.hpp"

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <iterator>
 #include <map>
-#include <optional>
 #include <random>
 #include <utility>
 
@@ -16,7 +15,7 @@
 #include "analysis/measures.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/schema.hpp"
-#include "experiments/runner/measure_sources.hpp"
+#include "experiments/runner/measure.hpp"
 #include "experiments/runner/stage.hpp"
 #include "provenance/derived.hpp"
 #include "provenance/events.hpp"
@@ -131,22 +130,16 @@ std::vector<CachedMeasure> cached_measures(const CheckpointRecord& record, Deriv
                                            MeasureSources& sources) {
   sources.read_run(record.run);
   std::vector<CachedMeasure> found;
-  std::vector<DerivedKey> keys;
   for (const Provider& one : all_providers()) {
     for (const std::uint64_t every : sources.cadences(record.run)) {
       if (!one.is_kept() || (every != 1 && one.cycles_back == 0)) continue;
-      keys.push_back(sources.key(record, one, every));
-      found.push_back({&one, every, {keys.back(), {}}});
+      DerivedObject object{sources.key(record, one, every), {}};
+      auto content = cache.get({&object.key, 1}).front();
+      if (!content) continue;
+      object.content = std::move(*content);
+      found.push_back({&one, every, std::move(object)});
     }
   }
-  auto cached = cache.get(keys);
-  std::size_t k = 0;
-  std::erase_if(found, [&](CachedMeasure& one) {
-    const bool has = cached[k].has_value();
-    if (has) one.object.content = std::move(*cached[k]);
-    ++k;
-    return !has;
-  });
   return found;
 }
 
@@ -169,17 +162,6 @@ std::string wrong_measure(const Store& store, const CheckpointRecord& record,
     // Another program has just pruned the checkpoint.
   }
   return "";
-}
-
-std::vector<CheckpointRecord> measured_checkpoints(const Store& store, DerivedCache& cache,
-                                                   MeasureSources& sources) {
-  std::vector<CheckpointRecord> found;
-  for (const Stage& stage : store.stages()) {
-    for (CheckpointRecord& record : store.checkpoints(stage.id)) {
-      if (!cached_measures(record, cache, sources).empty()) found.push_back(std::move(record));
-    }
-  }
-  return found;
 }
 
 void check_pruned(const Store& store, DerivedCache& cache, MeasureCheck& check) {
@@ -272,7 +254,7 @@ std::vector<Finding> check_runs(const Store& store) {
       check_stage(stage);
       if (stage.parent.empty()) continue;
       if (store.stage(stage.parent).kind != name_of(StageKind::prepare)) {
-        const auto start = recorded_start(store, stage, read_stage(stage.resolved).parameters);
+        const auto start = starting_state(store, stage, read_stage(stage.resolved).parameters);
         check_beginning(store, stage, start ? std::set{start->step} : std::set<std::uint64_t>{});
         continue;
       }
@@ -294,7 +276,12 @@ MeasureCheck check_measures(const Store& store, const std::filesystem::path& fol
                             std::size_t count, std::uint64_t seed) {
   DerivedCache cache(folder, Access::read);
   MeasureSources sources(store);
-  const std::vector<CheckpointRecord> cached = measured_checkpoints(store, cache, sources);
+  std::vector<CheckpointRecord> cached;  // checkpoints with cached measures
+  for (const Stage& stage : store.stages()) {
+    for (CheckpointRecord& record : store.checkpoints(stage.id)) {
+      if (!cached_measures(record, cache, sources).empty()) cached.push_back(std::move(record));
+    }
+  }
   const std::vector<CheckpointRecord> chosen = sample(cached, count, seed);
   MeasureCheck check{.cached = cached.size(), .computed = chosen.size()};
   for (const CheckpointRecord& record : chosen) {

@@ -11,6 +11,7 @@
 #include <functional>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -32,8 +33,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// held: another process is computing the stage. ended: this campaign will not complete the stage.
-enum class JobState { waiting, running, held, done, ended };
+// ended: this campaign will not complete the stage.
+enum class JobState { waiting, running, done, ended };
 
 // Time between two checks of a stage that another process computes.
 constexpr std::chrono::milliseconds kCheckInterval{500};
@@ -153,25 +154,25 @@ class Campaign {
  private:
   struct Job : StageJob {
     JobState state = JobState::waiting;
-    Clock::time_point check_at = {};  // when to check next whether the other process is done
-    int losses = 0;                   // number of attempts that ended with StageOutcome::lost
+    // When to check next whether another process, which was computing the stage, is done. Empty if
+    // no other process was.
+    std::optional<Clock::time_point> check_at = {};
+    int losses = 0;  // number of attempts that ended with StageOutcome::lost
   };
 
-  // Returns the first job that can begin, or else the first JobState::held job whose `check_at` has
-  // passed, or else null. Jobs that can no longer begin get the state JobState::ended.
+  // Returns the first job that can begin, or else the first job whose `check_at` has passed, or
+  // else null. Jobs that can no longer begin get the state JobState::ended.
   Job* next_job() {
     Job* held_job = nullptr;
     for (Job& job : jobs_) {
-      const bool held = job.state == JobState::held;
-      if (job.state != JobState::waiting && !held) continue;
+      if (job.state != JobState::waiting) continue;
       const JobState before = parent_state(job);
       if (before == JobState::ended || error_ || stop_requested()) {
         job.state = JobState::ended;
         ++(was_done(job) ? result_.already : result_.blocked);
-      } else if (held) {
-        if (held_job == nullptr && Clock::now() >= job.check_at) held_job = &job;
       } else if (before == JobState::done) {
-        return &job;
+        if (!job.check_at) return &job;
+        if (held_job == nullptr && Clock::now() >= *job.check_at) held_job = &job;
       }
     }
     return held_job;
@@ -201,20 +202,18 @@ class Campaign {
     for (;;) {
       Job* const job = next_job();
       if (job == nullptr) {
-        const std::size_t held = count(JobState::held);
+        const auto is_held = [](const Job& one) {
+          return one.state == JobState::waiting && one.check_at;
+        };
+        const auto held = static_cast<std::size_t>(std::ranges::count_if(jobs_, is_held));
         if (held == 0 && (count(JobState::waiting) == 0 || count(JobState::running) == 0)) break;
-        if (held > 0) {
-          show_waiting(held);
-          changed_.wait_for(lock, kCheckInterval);
-        } else {
-          changed_.wait(lock);
-        }
+        if (held > 0) show_waiting(held);
+        changed_.wait_for(lock, kCheckInterval);
         continue;
       }
-      const bool was_held = job->state == JobState::held;
       job->state = JobState::running;
       lock.unlock();
-      const JobState state = run_job(*job, was_held);
+      const JobState state = run_job(*job);
       lock.lock();
       job->state = state;
       changed_.notify_all();
@@ -239,9 +238,9 @@ class Campaign {
         true);
   }
 
-  JobState run_job(Job& job, bool was_held) {
+  JobState run_job(Job& job) {
     try {
-      return compute(job, was_held);
+      return compute(job);
     } catch (const StoreDamaged& damage) {
       note(job, &CampaignResult::damaged, damage.what());
     } catch (const GeometryError& error) {
@@ -271,10 +270,11 @@ class Campaign {
 
   JobState put_off(Job& job) {
     job.check_at = Clock::now() + kCheckInterval;
-    return JobState::held;
+    return JobState::waiting;
   }
 
-  JobState compute(Job& job, bool was_held) {
+  JobState compute(Job& job) {
+    const bool was_held = job.check_at.has_value();
     const Stage stage = store_.stage(job.id);
     if (is_done(store_, stage)) {
       finish(job, was_held ? &CampaignResult::elsewhere : &CampaignResult::already,

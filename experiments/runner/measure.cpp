@@ -13,19 +13,39 @@
 #include <utility>
 
 #include "analysis/error.hpp"
+#include "core/drive.hpp"
 #include "core/threads.hpp"
-#include "experiments/runner/measure_sources.hpp"
-#include "provenance/derived.hpp"
+#include "experiments/manifest/conversion.hpp"
+#include "experiments/manifest/identity.hpp"
+#include "experiments/runner/outlook.hpp"
+#include "protocols/ledger.hpp"
+#include "protocols/rest.hpp"
 #include "provenance/errors.hpp"
+#include "provenance/events.hpp"
+#include "provenance/json_text.hpp"
 
 namespace shearcell {
 namespace {
 
 using nlohmann::json;
-using Results = std::vector<json>;
 
 // Results are cached in batches, because writing to the cache takes longer than a small analysis.
 constexpr std::size_t kBatch = 64;
+
+RunFacts facts_of(const Stage& stage) {
+  RunFacts facts{.parameters = member_of(stage.resolved, "parameters"),
+                 .drive = shear_drive(stage)};
+  if (!facts.drive) return facts;
+  const Scene scene = shear_scene(read_stage(stage.resolved).parameters);
+  facts.rest = [scene](const Checkpoint& from, double seconds) {
+    return rested(from.cell, scene, from.state, seconds);
+  };
+  facts.next_cycle = [scene, drive = *facts.drive](const Checkpoint& from, std::uint64_t stride) {
+    const Ledger sum = ledger(from.cell, scene, drive, from.state, cycle_steps(drive), stride);
+    return CycleEnergies{sum.work_of_walls, sum.dissipation(), sum.stored()};
+  };
+  return facts;
+}
 
 class Measuring {
  public:
@@ -38,36 +58,24 @@ class Measuring {
     // `checkpoints` lists a checkpoint twice if two experiments share it.
     std::map<std::pair<std::string_view, std::uint64_t>, std::size_t> known;
     for (const ToMeasure& one : checkpoints) {
-      sources_.read_run(one.checkpoint->run);
       const std::pair which = {std::string_view(one.checkpoint->sha256), one.every};
-      const auto [entry, fresh] = known.try_emplace(which, distinct_.size());
-      if (fresh) distinct_.push_back(one);
+      const auto [entry, fresh] = known.try_emplace(which, tasks_.size());
       place_.push_back(entry->second);
-    }
-    results_.assign(distinct_.size(), Results(providers_.size()));
-    for (std::size_t i = 0; i < distinct_.size(); ++i) {
-      const auto [record, every] = distinct_[i];
-      for (std::size_t p = 0; p < providers_.size(); ++p) {
-        keys_.push_back(sources_.key(*record, *providers_[p], every));
-        if (!takes(*record, *providers_[p])) {
-          results_[i][p] = json::object();  // an empty result
-          continue;
-        }
-        const CheckpointRecord* other = sources_.earlier(*record, *providers_[p], every);
-        if (other != nullptr) outcome_.earlier.insert(other->sha256);
-      }
+      if (!fresh) continue;
+      sources_.read_run(one.checkpoint->run);
+      look_up(tasks_.emplace_back(Task{one}));
     }
   }
 
   MeasureOutcome run() {
-    look_up();
-    for (std::size_t i = 0; i < distinct_.size(); ++i) {
-      const auto wanted = std::span(results_[i]).first(wanted_);
-      if (std::ranges::any_of(wanted, &json::is_null)) todo_.push_back(i);
+    std::vector<Task*> todo;
+    for (Task& task : tasks_) {
+      const auto wanted = std::span(task.results).first(wanted_);
+      if (std::ranges::any_of(wanted, &json::is_null)) todo.push_back(&task);
     }
     try {
       outcome_ += read_in_parallel(
-          todo_.size(), options_.workers, [this](std::size_t n) { compute(todo_[n]); },
+          todo.size(), options_.workers, [&](std::size_t n) { compute(*todo[n]); },
           options_.report);
     } catch (...) {
       flush();
@@ -75,13 +83,20 @@ class Measuring {
     }
     flush();
     for (std::size_t k = 0; k < place_.size(); ++k) {
-      read(*checkpoints_[k].checkpoint, results_[place_[k]]);
+      read(*checkpoints_[k].checkpoint, tasks_[place_[k]].results);
     }
     outcome_.cache_trouble = cache_.trouble();
     return std::move(outcome_);
   }
 
  private:
+  /// A checkpoint that is measured once. Each provider has one key and one result; the result is
+  /// null until it is known.
+  struct Task : ToMeasure {
+    std::vector<DerivedKey> keys = {};
+    std::vector<json> results = {};
+  };
+
   void add(const Provider& one) {
     const bool listed = std::ranges::find(providers_, &one) != providers_.end();
     if (one.is_kept() && !listed) providers_.push_back(&one);
@@ -94,51 +109,59 @@ class Measuring {
     return record.cycle >= static_cast<double>(first) && record.cycle <= static_cast<double>(last);
   }
 
-  void look_up() {
-    const auto found = cache_.get(keys_);
-    for (const ToMeasure& one : distinct_) {
-      if (one.checkpoint->state == CheckpointState::pruned && !cache_.trouble().empty()) {
-        const std::string why =
-            cache_.trouble() + "; the measures of pruned checkpoints are only in derived.sqlite";
-        if (cache_.is_unread()) throw MachineError(why);
-        throw StoreDamaged(why);
-      }
-      const auto pruned = sources_.compare_pruned(*one.checkpoint, cache_);
-      for (const std::string& damage :
-           {pruned.altered, pruned.absent > 0 ? cache_.replaced() : ""}) {
-        if (!damage.empty()) outcome_.damage.insert(damage);
-      }
+  void look_up(Task& task) {
+    const CheckpointRecord& record = *task.checkpoint;
+    const bool is_pruned = record.state == CheckpointState::pruned;
+    for (const Provider* one : providers_) {
+      task.keys.push_back(sources_.key(record, *one, task.every));
     }
-    for (std::size_t k = 0; k < keys_.size(); ++k) {
-      json& result = results_[k / providers_.size()][k % providers_.size()];
-      if (!found[k] || !result.is_null()) continue;
-      const CheckpointRecord& record = *distinct_[k / providers_.size()].checkpoint;
+    const auto found = cache_.get(task.keys);
+    if (is_pruned && !cache_.trouble().empty()) {
+      const std::string why =
+          cache_.trouble() + "; the measures of pruned checkpoints are only in derived.sqlite";
+      if (cache_.is_unread()) throw MachineError(why);
+      throw StoreDamaged(why);
+    }
+    const auto pruned = sources_.compare_pruned(record, cache_);
+    for (const std::string& damage : {pruned.altered, pruned.absent > 0 ? cache_.replaced() : ""}) {
+      if (!damage.empty()) outcome_.damage.insert(damage);
+    }
+    for (std::size_t p = 0; p < providers_.size(); ++p) {
+      json& result = task.results.emplace_back();
+      if (!takes(record, *providers_[p])) {
+        result = json::object();  // an empty result
+        continue;
+      }
+      const CheckpointRecord* other = sources_.earlier(record, *providers_[p], task.every);
+      if (other != nullptr) outcome_.earlier.insert(other->sha256);
       // If the log has digests of other results only, the checkpoint must not be pruned.
-      const bool kept = record.state != CheckpointState::pruned;
-      if (!sources_.is_as_pruned(record, {keys_[k], *found[k]}).value_or(kept)) continue;
+      if (!found[p] ||
+          !sources_.is_as_pruned(record, {task.keys[p], *found[p]}).value_or(!is_pruned)) {
+        continue;
+      }
       try {
-        result = decode_result(*found[k]);
+        result = decode_result(*found[p]);
       } catch (const AnalysisError&) {
         // The hash matches, but the bytes are not a result: the result is recomputed and replaced.
       }
     }
   }
 
-  void compute(std::size_t i) {
-    const CheckpointRecord& record = *distinct_[i].checkpoint;
+  void compute(Task& task) {
+    const CheckpointRecord& record = *task.checkpoint;
     const Checkpoint checkpoint = sources_.load(record);
     std::optional<Analysis> analysis;  // computed once, if a provider needs it
     std::vector<DerivedObject> objects;
     MeasureOutcome unread;
     for (std::size_t p = 0; p < providers_.size(); ++p) {
-      if (!results_[i][p].is_null()) continue;
+      if (!task.results[p].is_null()) continue;
       const bool analyses = providers_[p]->from != ComputedFrom::simulation;
       if (analyses && !analysis) analysis = analyse_stored(record, checkpoint);
-      auto result = sources_.compute(*providers_[p], record, distinct_[i].every, &checkpoint,
+      auto result = sources_.compute(*providers_[p], record, task.every, &checkpoint,
                                      analysis ? &*analysis : nullptr, unread);
       if (!result) continue;
-      objects.push_back({keys_[i * providers_.size() + p], encode_result(*result)});
-      results_[i][p] = std::move(*result);
+      objects.push_back({task.keys[p], encode_result(*result)});
+      task.results[p] = std::move(*result);
     }
     const std::lock_guard lock(mutex_);
     outcome_.measured.insert(record.sha256);
@@ -152,7 +175,7 @@ class Measuring {
     pending_.clear();
   }
 
-  void read(CheckpointMeasures& one, const Results& results) try {
+  void read(CheckpointMeasures& one, const std::vector<json>& results) try {
     one.measures = {};
     one.lacking.clear();
     for (std::size_t p = 0; p < wanted_; ++p) {
@@ -173,12 +196,9 @@ class Measuring {
   const MeasureOptions& options_;
   std::vector<const Provider*> providers_;  // the requested providers, then MeasureOptions::also
   std::size_t wanted_ = 0;                  // number of requested providers (without `also`)
-  std::vector<ToMeasure> distinct_;
-  std::vector<std::size_t> place_;  // for each checkpoint, its index in distinct_
-  std::vector<DerivedKey> keys_;    // one per provider, for each checkpoint in distinct_
-  std::vector<std::size_t> todo_;
-  std::vector<Results> results_;  // one per checkpoint in distinct_, each written by one thread
-  std::mutex mutex_;              // guards the members below while threads run
+  std::vector<Task> tasks_;                 // the results of a task are written by one thread
+  std::vector<std::size_t> place_;          // for each checkpoint, its index in tasks_
+  std::mutex mutex_;                        // guards the members below while threads run
   DerivedCache cache_;
   std::vector<DerivedObject> pending_;
   MeasureOutcome outcome_;
@@ -245,6 +265,131 @@ MeasureOutcome measure_checkpoints(const Store& store, std::span<const ToMeasure
                                    const MeasureOptions& options) {
   if (checkpoints.empty()) return {};
   return Measuring(store, checkpoints, providers, options).run();
+}
+
+MeasureSources::MeasureSources(const std::string& id, const Stage& stage) {
+  runs_[id].facts = facts_of(stage);
+}
+
+void MeasureSources::read_run(const std::string& run) {
+  const auto [entry, first] = runs_.try_emplace(run);
+  if (!first) return;
+  const Stage stage = store_->stage(run);
+  entry->second.facts = facts_of(stage);
+  for (const Ask& ask : asks_of(stage.memberships))
+    entry->second.cadences.insert(ask.checkpoint_every);
+  for (const Event& event : store_->events(run_stream(run), events::CheckpointPruned::kType)) {
+    auto pruned = std::get<events::CheckpointPruned>(events::decode(event));
+    if (pruned.measures.empty()) continue;
+    Digests& all = entry->second.digests[pruned.checkpoint.sha256];
+    pruned.measures.merge(all);  // if both events have a digest, keeps the later one
+    all = std::move(pruned.measures);
+  }
+  if (!entry->second.facts.drive) return;
+  for (CheckpointRecord& one : store_->checkpoints(run, Listed::and_pruned)) {
+    const std::uint64_t step = one.step;
+    entry->second.checkpoints.insert_or_assign(step, std::move(one));
+  }
+}
+
+std::optional<bool> MeasureSources::is_as_pruned(const CheckpointRecord& record,
+                                                 const DerivedObject& object) const {
+  const auto& all = runs_.at(record.run).digests;
+  const auto log = all.find(record.sha256);
+  if (log == all.end()) return true;
+  const auto [name, digest] = digest_entry(object);
+  const auto found = log->second.find(name);
+  return found == log->second.end() ? std::nullopt : std::optional(found->second == digest);
+}
+
+MeasureSources::PrunedMeasures MeasureSources::compare_pruned(const CheckpointRecord& record,
+                                                              DerivedCache& cache) const {
+  const auto& all = runs_.at(record.run).digests;
+  const auto log = all.find(record.sha256);
+  PrunedMeasures result;
+  if (record.state != CheckpointState::pruned || log == all.end()) return result;
+  const Digests cached = cache.digests(record.sha256, true);
+  for (const auto& [name, digest] : log->second) {
+    const auto now = cached.find(name);
+    ++result.named;
+    if (now == cached.end()) ++result.absent;
+    if (now == cached.end() || now->second == digest) continue;
+    result.altered = fmt::format(
+        "{}: {} of checkpoint {:.12} (run {:.12}, cycle {:g}) does not have the digest that was "
+        "logged when the checkpoint was pruned; restore derived.sqlite from a backup, or run "
+        "`shearcell regenerate {:.12}`",
+        DerivedCache::kFile, name, record.sha256, record.run, record.cycle, record.sha256);
+  }
+  return result;
+}
+
+DerivedKey MeasureSources::key(const CheckpointRecord& record, const Provider& provider,
+                               std::uint64_t every) const {
+  std::string text = provider.key();
+  if (provider.cycles_back > 0) {
+    const CheckpointRecord* other = earlier(record, provider, every);
+    text += " " + (other == nullptr ? "none" : other->sha256);
+  }
+  return {record.sha256, std::move(text), analysis_version};
+}
+
+const CheckpointRecord* MeasureSources::earlier(const CheckpointRecord& record,
+                                                const Provider& provider,
+                                                std::uint64_t every) const {
+  const auto run = runs_.find(record.run);
+  if (run == runs_.end() || !run->second.facts.drive) return nullptr;
+  const std::uint64_t steps = cycle_steps(*run->second.facts.drive);
+  const std::uint64_t back = provider.cycles_back * steps;
+  if (back == 0 || record.step < back) return nullptr;
+  const std::uint64_t step = record.step - back;
+  if (step % steps == 0 && step / steps % every != 0) return nullptr;
+  const auto found = run->second.checkpoints.find(step);
+  return found == run->second.checkpoints.end() ? nullptr : &found->second;
+}
+
+std::optional<nlohmann::json> MeasureSources::compute(
+    const Provider& provider, const CheckpointRecord& record, std::uint64_t every,
+    const Checkpoint* checkpoint, const Analysis* analysis, MeasureOutcome& unread) const {
+  Checkpoint other;
+  const auto load_earlier = [&]() -> const Checkpoint* {
+    const CheckpointRecord* found = earlier(record, provider, every);
+    if (found == nullptr) return nullptr;
+    other = load(*found);
+    return &other;
+  };
+  try {
+    return provider.compute(
+        {analysis, checkpoint, load_earlier, &record, &runs_.at(record.run).facts});
+  } catch (const FilePruned& pruned) {
+    unread.pruned.insert(pruned.what());
+  } catch (const StoreDamaged& damage) {
+    unread.damage.insert(damage.what());
+  }
+  return std::nullopt;
+}
+
+void MeasureSources::add_recorded(const CheckpointRecord& record, Measures& measures) const {
+  MeasureOutcome none;
+  for (const Provider& one : all_providers()) {
+    if (one.from != ComputedFrom::record) continue;
+    if (const auto result = compute(one, record, 1, nullptr, nullptr, none)) {
+      one.read(*result, measures);
+    }
+  }
+}
+
+Measures MeasureSources::measures_of(const CheckpointRecord& record, std::uint64_t every,
+                                     const Checkpoint& checkpoint, const Analysis& analysis,
+                                     bool (*wanted)(const Provider&),
+                                     MeasureOutcome& unread) const {
+  Measures measures;
+  for (const Provider& one : all_providers()) {
+    if (!wanted(one)) continue;
+    const auto result = compute(one, record, every, &checkpoint, &analysis, unread);
+    if (result) one.read(*result, measures);
+  }
+  add_recorded(record, measures);
+  return measures;
 }
 
 }  // namespace shearcell

@@ -166,24 +166,21 @@ void find_left(const Stage& stage, const Drive& motion, EngineKind engine,
   look.checkpoints = asked.to_come;
   if (engine == EngineKind::shearcell) look.missing = std::move(asked.missing);
   double steps = std::max(0.0, length - now);
-  // The last checkpoint before `step` whose file exists; null if the stage must be computed from
-  // its beginning.
-  const auto recorded_before = [&](std::uint64_t step) {
-    const CheckpointRecord* last = nullptr;
+  // Steps from the last checkpoint before `first` whose file exists, or else from the beginning of
+  // the stage, to `last`.
+  const auto steps_again = [&](std::uint64_t first, std::uint64_t last) {
+    std::uint64_t from = 0;
     for (const CheckpointRecord& record : checkpoints) {
-      if (record.state == CheckpointState::recorded && record.step < step) last = &record;
+      if (record.state == CheckpointState::recorded && record.step < first) from = record.step;
     }
-    return last;
-  };
-  const auto steps_to = [&](std::uint64_t step, const CheckpointRecord* from) {
-    return static_cast<double>(step - (from != nullptr ? from->step : 0));
+    return static_cast<double>(last - from);
   };
   const bool pruned = !checkpoints.empty() && checkpoints.back().state == CheckpointState::pruned;
   if (length > now && pruned) {  // the last checkpoint must be recomputed first
-    steps += steps_to(checkpoints.back().step, recorded_before(checkpoints.back().step));
+    steps += steps_again(checkpoints.back().step, checkpoints.back().step);
   }
   if (!look.missing.empty()) {
-    steps += steps_to(look.missing.back(), recorded_before(look.missing.front()));
+    steps += steps_again(look.missing.front(), look.missing.back());
     look.checkpoints += static_cast<double>(look.missing.size());
   }
   look.particle_steps = static_cast<double>(stage.grains) * steps;
@@ -483,14 +480,11 @@ constexpr MeasuredRate kLammpsRates[] = {{5200, 6.6e6}, {1e5, 3.0e6}};
 
 // Interpolates by a power law in N; constant below the smallest and above the largest measured N.
 double assumed_rate(std::span<const MeasuredRate> rates, double grains) {
-  if (grains <= rates.front().grains) return rates.front().rate;
-  for (std::size_t i = 1; i < rates.size(); ++i) {
-    const MeasuredRate &a = rates[i - 1], &b = rates[i];
-    if (grains > b.grains) continue;
-    const double part = std::log(grains / a.grains) / std::log(b.grains / a.grains);
-    return a.rate * std::pow(b.rate / a.rate, part);
-  }
-  return rates.back().rate;
+  std::size_t i = 1;
+  while (i + 1 < rates.size() && rates[i].grains < grains) ++i;
+  const MeasuredRate &a = rates[i - 1], &b = rates[i];
+  const double part = std::log(grains / a.grains) / std::log(b.grains / a.grains);
+  return a.rate * std::pow(b.rate / a.rate, std::clamp(part, 0.0, 1.0));
 }
 
 // Measured size [bytes] of a checkpoint file: per grain, per wall grain, and a constant part.
@@ -524,8 +518,8 @@ Rate Rates::of(const Stage& stage) const {
   if (sum != sums_.end() && sum->second.seconds >= 1) {
     return {sum->second.steps / sum->second.seconds, true};
   }
-  if (engine == EngineKind::lammps) return {assumed_rate(kLammpsRates, grains), false};
-  return {assumed_rate(kOurRates, grains), false};
+  const bool ours = engine == EngineKind::shearcell;
+  return {ours ? assumed_rate(kOurRates, grains) : assumed_rate(kLammpsRates, grains), false};
 }
 
 void Work::add(const Stage& stage, const Outlook& look, const Rates& rates) {

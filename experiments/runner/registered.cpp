@@ -96,6 +96,7 @@ std::vector<RegisteredManifest> newest_manifests(const Store& store) {
       *known = std::move(manifest);
     }
   }
+  for (RegisteredManifest& manifest : newest) manifest.content = recorded_manifest(manifest.text);
   return newest;
 }
 

@@ -15,11 +15,13 @@
 namespace shearcell {
 
 /// A registered manifest. `experiment`, `question` and `figures` (names of figures) are copies from
-/// `info`. In a damaged store, the text may not match its SHA-256.
+/// `info`; newest_manifests() sets `content`, the parsed text. In a damaged store, the text may not
+/// match its SHA-256.
 struct RegisteredManifest : ManifestText {
   std::string experiment;
   std::string question;
   std::vector<std::string> figures;
+  Manifest content = {};
 };
 
 /// Display names of the variants of each manifest (by variant_names()) and of settled packings. A

@@ -79,14 +79,10 @@ double overlap_limit(const Store& store, const Stage& stage, double otherwise) {
   double limit = stage.memberships.empty() ? otherwise : 0;
   for (const Membership& m : stage.memberships) {
     const auto manifest = find_manifest(store, m.place.manifest);
-    const nlohmann::json info = manifest ? manifest->info : nlohmann::json::object();
-    try {
-      const nlohmann::json stated = info.value("max_overlap_diameters", nlohmann::json::object());
-      limit = std::max(limit, stated.value(m.place.scale, otherwise));
-    } catch (const nlohmann::json::exception& problem) {
-      throw StoreDamaged(fmt::format("manifest {:.12}: its recorded facts are invalid: {}",
-                                     m.place.manifest, problem.what()));
-    }
+    const nlohmann::json limits =
+        member_of(manifest ? manifest->info : nlohmann::json(), "max_overlap_diameters");
+    const nlohmann::json stated = member_of(limits, m.place.scale.c_str());
+    limit = std::max(limit, stated.is_number() ? stated.get<double>() : otherwise);
   }
   return limit;
 }
@@ -116,34 +112,41 @@ ReadyStage ready_stage(const Store& store, Stage stage) {
 struct Beginning {
   Cell cell;
   State state;
-  std::optional<CheckpointRecord> from = {};  ///< set if the state is a checkpoint of this stage
-  std::string parent_checkpoint = {};         ///< SHA-256; "" if `state` is not from the parent
+  /// The checkpoint that holds the state: of this stage, or of its parent. Empty for new grains.
+  std::optional<CheckpointRecord> record = {};
+
+  const CheckpointRecord* from(const std::string& stage) const {
+    return record && record->run == stage ? &*record : nullptr;
+  }
 };
 
 /// Recomputes the file of a checkpoint if it was pruned. Throws FilePruned if the options do not
 /// permit this, or if this program cannot reproduce the bits.
 void restore_if_pruned(Store& store, const CheckpointRecord& record, const StageOptions& options);
 
-/// The parent's checkpoint at `start_cycle`, with noise added to the positions.
-Beginning recorded_beginning(Store& store, const ReadyStage& plan, const StageOptions& options) {
+/// The state that starting_state() gives, with noise added to the positions.
+Beginning beginning_after_parent(Store& store, const ReadyStage& plan,
+                                 const StageOptions& options) {
   const Parameters& p = plan.inputs.parameters;
-  const auto record = recorded_start(store, plan.stage, p);
-  const std::string what = fmt::format(
-      "run {:.12}: the state at cycle {}, from which run {:.12} "
-      "starts, ",
-      plan.stage.parent, p.start_cycle, plan.stage.id);
+  const auto record = starting_state(store, plan.stage, p);
+  const std::string what =
+      fmt::format("run {:.12}: the state from which run {:.12} starts (cycle {})",
+                  plan.stage.parent, plan.stage.id, p.start_cycle);
   if (!record) {
-    throw NotFound(what + "was never recorded; name a recorded cycle, or request more checkpoints");
+    throw NotFound(what +
+                   " was never recorded; `shearcell resume` first settles an unfinished "
+                   "packing. For another run, name a recorded cycle, or request more "
+                   "checkpoints");
   }
   restore_if_pruned(store, *record, options);
   auto checkpoint = store.load_if_readable(*record);
   if (!checkpoint) {
-    throw StoreDamaged(fmt::format("{}is damaged; `shearcell regenerate {:.12}` restores its file",
+    throw StoreDamaged(fmt::format("{} is damaged; `shearcell regenerate {:.12}` restores its file",
                                    what, record->sha256));
   }
   checkpoint->state.step = 0;
   add_noise(checkpoint->state, p.start_noise_d, plan.inputs.seed);
-  return {std::move(checkpoint->cell), std::move(checkpoint->state), std::nullopt, record->sha256};
+  return {std::move(checkpoint->cell), std::move(checkpoint->state), *record};
 }
 
 /// The stage's newest valid checkpoint before `before_step`, or the initial state of the stage if
@@ -151,41 +154,22 @@ Beginning recorded_beginning(Store& store, const ReadyStage& plan, const StageOp
 /// `damage`: as for Store::newest_valid_checkpoint().
 Beginning beginning_of(Store& store, const ReadyStage& plan, const StageOptions& options,
                        std::vector<std::string>* damage, std::uint64_t before_step = UINT64_MAX) {
-  const Stage& stage = plan.stage;
-  if (auto newest = store.newest_valid_checkpoint(stage.id, damage, before_step)) {
+  const StageInputs& inputs = plan.inputs;
+  if (auto newest = store.newest_valid_checkpoint(plan.stage.id, damage, before_step)) {
     return {std::move(newest->checkpoint.cell), std::move(newest->checkpoint.state),
             std::move(newest->record)};
   }
-  if (plan.inputs.file) {
-    auto [text, path] = store.packing_text(plan.inputs.file->sha256);
-    PlacedGrains grains = placed({path, text, *plan.inputs.file}, plan.inputs.parameters,
-                                 plan.inputs.seed, give_up_if_requested);
+  if (inputs.file) {
+    auto [text, path] = store.packing_text(inputs.file->sha256);
+    PlacedGrains grains =
+        placed({path, text, *inputs.file}, inputs.parameters, inputs.seed, give_up_if_requested);
     return {std::move(grains.cell), std::move(grains.state)};
   }
-  if (stage.parent.empty()) {
-    const Geometry shape = geometry(plan.inputs.parameters);
-    Cell cell = make_cell(shape, plan.inputs.seed, give_up_if_requested);
-    State state = fill_cell(cell, shape, plan.inputs.seed, give_up_if_requested);
-    return {std::move(cell), std::move(state)};
-  }
-  const Stage ended = store.stage(stage.parent);
-  if (ended.kind != name_of(StageKind::prepare)) return recorded_beginning(store, plan, options);
-  const std::vector<CheckpointRecord> known = store.checkpoints(stage.parent, Listed::and_pruned);
-  const bool recorded = ended.state == StageState::completed && !known.empty();
-  if (recorded) restore_if_pruned(store, known.back(), options);
-  auto parent = store.newest_valid_checkpoint(stage.parent, damage);
-  // The stage must start from the checkpoint at which the parent was completed.
-  if (!parent || ended.state != StageState::completed || parent->record.step != ended.step) {
-    throw StoreDamaged(fmt::format(
-        "run {:.12}: the settled packing from which run {:.12} starts is missing or damaged; {}",
-        stage.parent, stage.id,
-        recorded
-            ? fmt::format("`shearcell regenerate {:.12}` restores its file", known.back().sha256)
-            : "`shearcell resume` recomputes the packing first"));
-  }
-  parent->checkpoint.state.step = 0;
-  return {std::move(parent->checkpoint.cell), std::move(parent->checkpoint.state), std::nullopt,
-          parent->record.sha256};
+  if (!plan.stage.parent.empty()) return beginning_after_parent(store, plan, options);
+  const Geometry shape = geometry(inputs.parameters);
+  Cell cell = make_cell(shape, inputs.seed, give_up_if_requested);
+  State state = fill_cell(cell, shape, inputs.seed, give_up_if_requested);
+  return {std::move(cell), std::move(state)};
 }
 
 Simulation make_simulation(const ReadyStage& plan, Beginning&& beginning, std::size_t threads) {
@@ -392,7 +376,7 @@ class StageAttempt {
     for (const std::string& what : damage) {
       if (options_.damaged) options_.damaged(what);
     }
-    const bool fresh = !beginning.from;
+    const bool fresh = beginning.from(id()) == nullptr;
     nlohmann::json facts = host_facts();
     std::optional<LammpsProgram> lammps;
     if (plan_.inputs.parameters.engine == EngineKind::lammps) {
@@ -451,15 +435,15 @@ class StageAttempt {
   // Records the start, calls compute(), and records the end of an attempt that fails.
   StageOutcome attempt(const Beginning& beginning, const nlohmann::json& facts, bool filling,
                        const std::function<StageOutcome()>& compute) {
-    const auto from = beginning.from ? std::optional(beginning.from->sha256) : std::nullopt;
+    const std::optional<CheckpointRecord> first = beginning.record;
+    const CheckpointRecord* const own_first = beginning.from(id());
     bool started = false;
     try {
-      store_.start_stage(id(), facts, from, beginning.parent_checkpoint, filling);
+      store_.start_stage(id(), facts,
+                         own_first != nullptr ? std::optional(own_first->sha256) : std::nullopt,
+                         first && own_first == nullptr ? first->sha256 : "", filling);
       started = true;
       if (options_.begun) options_.begun();
-      const auto first = beginning.from || beginning.parent_checkpoint.empty()
-                             ? beginning.from
-                             : store_.find_checkpoint(beginning.parent_checkpoint);
       RunLineages known;
       const bool own = plan_.inputs.parameters.engine == EngineKind::shearcell;
       const auto other = own && first ? why_not_again(store_, *first, known) : std::nullopt;
@@ -632,7 +616,7 @@ std::optional<Checkpoint> compute_again(Store& store, Replay& replay, const Stag
   const ReadyStage plan = ready_stage(store, store.stage(record.run));
   try {
     Beginning beginning = beginning_of(store, plan, options, nullptr, record.step);
-    replay.from = beginning.from;
+    if (const auto* from = beginning.from(record.run)) replay.from = *from;
     OwnEngine engine(plan, std::move(beginning), options.parallel.threads);
     const std::uint64_t first = engine.step();
     const StageProgress progress = advance_to(engine, record.step, [&](const StageProgress&) {
@@ -761,11 +745,14 @@ bool is_done(const Store& store, const Stage& stage) {
          newest_is_sound(store, stage);
 }
 
-std::optional<CheckpointRecord> recorded_start(const Store& store, const Stage& stage,
+std::optional<CheckpointRecord> starting_state(const Store& store, const Stage& stage,
                                                const Parameters& parameters) {
+  const Stage parent = store.stage(stage.parent);
+  const bool settles = parent.kind == name_of(StageKind::prepare);
+  if (settles && parent.state != StageState::completed) return std::nullopt;
   const double cycle = static_cast<double>(parameters.start_cycle);
   for (const CheckpointRecord& record : store.checkpoints(stage.parent, Listed::and_pruned)) {
-    if (record.cycle == cycle) return record;
+    if (settles ? record.step == parent.step : record.cycle == cycle) return record;
   }
   return std::nullopt;
 }

@@ -43,18 +43,19 @@ struct StageOptions {
 /// cell. If the starting state was pruned, its file is restored first. About every 50 ms,
 /// checks stop_requested() and whether this program still holds the stage. If a stop is requested
 /// while the cell is filled, nothing is recorded. Throws before anything is recorded: StoreDamaged
-/// if the parent packing is not completed, the starting state is damaged, or the recorded
-/// parameters do not give the id; NotFound if the starting state was never recorded; FilePruned if
-/// it was pruned and cannot be recomputed; GeometryError if the cell cannot be filled;
-/// TooLittleMemory; ProgramError if the stage's engine is not installed.
+/// if the starting state is damaged, or the recorded parameters do not give the id; NotFound if
+/// there is no starting_state(); FilePruned if it was pruned and cannot be recomputed;
+/// GeometryError if the cell cannot be filled; TooLittleMemory; ProgramError if the stage's engine
+/// is not installed.
 StageOutcome run_stage(Store& store, const std::string& id, const StageOptions& options);
 
 /// Whether the stage is done (Outlook::done) and its last checkpoint can be read or was pruned.
 bool is_done(const Store& store, const Stage& stage);
 
-/// A shear may start from a recorded state of another shear, its parent. Returns the parent's
-/// checkpoint at `start_cycle`, even if its file is pruned; empty if it was never recorded.
-std::optional<CheckpointRecord> recorded_start(const Store& store, const Stage& stage,
+/// The checkpoint of the parent from which the stage starts, even if its file is pruned: the last
+/// one of a settled packing, or the one of another shear at `start_cycle`. Empty if it was never
+/// recorded, or if the packing has not settled.
+std::optional<CheckpointRecord> starting_state(const Store& store, const Stage& stage,
                                                const Parameters& parameters);
 
 /// Where a recomputed state differs from the recorded one.

@@ -123,17 +123,14 @@ void write_stderr(std::string_view text) noexcept {
 }
 
 std::function<void(std::size_t, std::size_t)> terminal_counter(std::string what) {
-  if (!moves_cursor(stderr)) {
-    // The function may be copied. All copies share this stopwatch.
-    return [what = std::move(what), said = std::make_shared<Stopwatch>()](std::size_t done,
-                                                                          std::size_t total) {
-      if (said->seconds() < 10) return;
-      said->restart();
-      write_stderr(fmt::format("{} {} of {}\n", what, done, total));
-    };
-  }
-  return [what = std::move(what)](std::size_t done, std::size_t total) {
-    write_stderr(fmt::format("\r{} {} of {}{}", what, done, total, done == total ? "\n" : ""));
+  // The function may be copied. All copies share the stopwatch.
+  return [what = std::move(what), redraws = moves_cursor(stderr),
+          said = std::make_shared<Stopwatch>()](std::size_t done, std::size_t total) {
+    const std::string text = fmt::format("{} {} of {}", what, done, total);
+    if (redraws) return write_stderr("\r" + text + (done == total ? "\n" : ""));
+    if (said->seconds() < 10) return;
+    said->restart();
+    write_stderr(text + "\n");
   };
 }
 

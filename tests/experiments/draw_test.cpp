@@ -523,7 +523,6 @@ TEST_F(DrawFigure, TakesAllFiguresOfACommandFromOneReadingOfTheManifests) {
   EXPECT_EQ(collect_runs(store_, wanted[0], {}).seeds.size(), 2U);
   EXPECT_EQ(collect_runs(store_, wanted[1], {}).seeds.size(), 2U);
   EXPECT_EQ(wanted[0].manifests, wanted[1].manifests);
-  EXPECT_EQ(wanted[0].manifests->front().planned.size(), 1U) << "of its only scale, once";
 }
 
 TEST_F(DrawFigure, LeavesOutADamagedCheckpointAndNamesIt) {
