@@ -74,9 +74,7 @@ class Deck {
   }
 
   // The fraction b dt/2m by which a grain's mass is increased, so that its drag b is implicit.
-  double added(double drag) const {
-    return task_.added_mass && !for_users_ ? 0.5 * drag * scene_.time_step : 0;
-  }
+  double added(double drag) const { return for_users_ ? 0 : 0.5 * drag * scene_.time_step; }
 
   void atoms(std::string_view units, std::string_view data) {
     add(text_, "units {}\natom_style sphere\natom_modify map array\nboundary s s p", units);
@@ -100,7 +98,6 @@ class Deck {
     add(text_, "group bottom type {}\ngroup top type {}", +kBottom, +kTop);
     add(text_, "set group wall y {:.17g} diameter {:.17g}", task_.state.wall_height * d_, d_);
     add(text_, "velocity wall set 0 {:.17g} 0 units box", task_.state.wall_velocity * d_);
-    const double drag = task_.added_mass ? area_ * scene_.wall_drag * m_ : 0;
     add(text_,
         R"(# A mass raised by drag*dt/2 makes LAMMPS's explicit drag equal to implicit drag.
 set group wall mass $({:.17g}+{:.17g}*dt/2:%.17g)
@@ -110,7 +107,8 @@ set group planted mass {:.17g}
 
 # Change diameters and masses of grains here, for example:
 # set atom 1*50 diameter {:.3g} density {:.6g})",
-        area_ * scene_.wall_mass * m_, drag, (1 + added(scene_.drag_rate)) * m_, 1e6 * m_, 0.8 * d_,
+        area_ * scene_.wall_mass * m_, area_ * scene_.wall_drag * m_,
+        (1 + added(scene_.drag_rate)) * m_, 1e6 * m_, 0.8 * d_,
         m_ / (std::numbers::pi / 6 * d_ * d_ * d_));
   }
 
