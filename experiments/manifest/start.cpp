@@ -157,35 +157,27 @@ const Stage& recorded_run(const Manifest& manifest, const Scale& scale, const Va
                         variant.parameters.start_seed,
                         start.variant.empty() ? "" : " and " + words_of(start.variant))
           : fmt::format("shear whose id begins with {}", start.run);
-  if (found.empty()) {
-    refuse(manifest.file, start.at, "start", fmt::format("the store has no {}", what), "",
-           "Compute this run first, or use --store to open the store that contains it.");
-  }
-  if (found.size() > 1) {
+  if (found.size() != 1) {
     refuse(
-        manifest.file, start.at, "start", fmt::format("the store has more than one {}", what), "",
-        start.run.empty() ? "Select one: `variant: \"KEY=VALUE\"`. Join several values by commas."
-                          : "Give more digits of the id.");
+        manifest.file, start.at, "start",
+        fmt::format("the store has {} {}", found.empty() ? "no" : "more than one", what), "",
+        found.empty() ? "Compute this run first, or use --store to open the store that contains it."
+        : start.run.empty() ? "Select one: `variant: \"KEY=VALUE\"`. Join several values by commas."
+                            : "Give more digits of the id.");
   }
   const double cycle = static_cast<double>(variant.parameters.start_cycle);
-  if (found.front()->cycle < cycle) {
-    refuse(manifest.file, start.at, "start",
-           fmt::format("run {:.8} has no cycle {} yet", found.front()->id, cycle),
-           fmt::format("cycle {}", found.front()->cycle), "Extend the run first.");
-  }
-  const auto records_it = [&](const Ask& ask) {
-    return std::fmod(cycle, static_cast<double>(ask.checkpoint_every)) == 0 ||
-           cycle == static_cast<double>(ask.target_cycles);
-  };
+  const double newest = found.front()->cycle;
   const std::vector<Ask> asks = asks_of(found.front()->memberships);
-  if (found.front()->cycle > cycle && !asks.empty() && std::ranges::none_of(asks, records_it)) {
+  const bool recorded = asks.empty() || std::ranges::any_of(asks, [&](const Ask& ask) {
+                          return std::fmod(cycle, static_cast<double>(ask.checkpoint_every)) == 0 ||
+                                 cycle == static_cast<double>(ask.target_cycles);
+                        });
+  if (newest < cycle || (newest > cycle && !recorded)) {
     refuse(manifest.file, start.at, "start",
            fmt::format("run {:.8} has no checkpoint at cycle {}", found.front()->id, cycle), "",
-           fmt::format("It has checkpoints every {} and at cycle {}. Name one of these "
-                       "cycles, or run its manifest again with `checkpoints: {{every_cycles: 1}}`.",
-                       counted(std::ranges::min(asks, {}, &Ask::checkpoint_every).checkpoint_every,
-                               "cycle"),
-                       found.front()->cycle));
+           fmt::format("The newest is at cycle {}. Extend the run, name another cycle, or run its "
+                       "manifest again with `checkpoints: {{every_cycles: 1}}`.",
+                       newest));
   }
   require_same_cell(manifest, scale, variant, *found.front());
   return *found.front();
