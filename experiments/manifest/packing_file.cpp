@@ -248,10 +248,8 @@ class PackingReader {
       read_dump();
     } else if (std::regex_search(string(text_.substr(0, 2000)), states_atoms)) {
       read_data();
-    } else if (file_.ends_with(".csv") || names_a_column(first)) {
-      read_csv();
     } else {
-      refuse_file("is not in a format that can be read", kFormats);
+      read_csv();
     }
     return packing();
   }
@@ -366,8 +364,8 @@ class PackingReader {
     leave(part);
   }
 
-  /// The pairs KEY=VALUE of a comment, and the text between pairs as values without key. Blanks may
-  /// be around `=`, and quotes or brackets around VALUE.
+  /// The pairs KEY=VALUE of a comment, and the words between pairs as values without key. Blanks
+  /// may be around `=`, and quotes or brackets around VALUE.
   static std::vector<std::pair<string_view, string_view>> pairs_of(string_view rest) {
     const auto cut = [&](std::size_t size) {
       const string_view front = rest.substr(0, size);
@@ -379,11 +377,7 @@ class PackingReader {
       const string_view key = cut(rest.find_first_of("= \t,;\"'"));
       cut(rest.find_first_not_of(" \t,;\"'"));
       if (!rest.starts_with('=')) {
-        if (key.empty()) continue;
-        const bool follows = !pairs.empty() && pairs.back().first.empty();
-        const char* from = follows ? pairs.back().second.data() : key.data();
-        if (follows) pairs.pop_back();
-        pairs.emplace_back("", string_view(from, key.data() + key.size()));
+        if (!key.empty()) pairs.emplace_back("", key);
         continue;
       }
       cut(1);
@@ -413,24 +407,28 @@ class PackingReader {
         "pbc|.*(stress|virial|strain|force|field|gravity|polari|moment|magmom).*",
         std::regex::icase);
     std::map<string_view, string_view> values;
+    string words;
     for (const auto& [key, value] : pairs_of(comment)) {
+      if (key.empty()) words.append(" ").append(value);
       const bool box =
           may_be_box(string(value)) && !std::regex_match(string(key.substr(0, 64)), other);
       // ASE writes unit_cell=conventional beside the lattice.
       const bool word = key == "unit_cell" && value.find_first_of("0123456789") == value.npos;
       if (word || (!box && !concerns_grains(key))) {
-        if (key != "pbc" || value != "\"F F T\"") leave(key.empty() ? "comment" : key);
+        if (key != "pbc" || value != "\"F F T\"") leave(key);
         continue;
       }
       const bool blanks = value.data() != key.data() + key.size() + 1;
       if (std::ranges::count(keys, key) == 0 || (blanks && !key.ends_with("unit"))) {
-        refuse_form(key.empty() ? value : key);
+        refuse_form(key);
       }
       const bool quoted = value.size() > 1 && (value.front() == '"' || value.front() == '\'');
       if (!values.emplace(key, quoted ? value.substr(1, value.size() - 2) : value).second) {
         refuse_part(key, "", "is a key that occurs twice", "Keep one of them.");
       }
     }
+    if (may_be_box(words)) refuse_form(comment);
+    if (!words.empty()) leave("comment");
     take_units_of_text(comment);
     for (const char* key : {"length_unit", "velocity_unit"}) {
       const string_view unit = values[key];
@@ -614,17 +612,9 @@ class PackingReader {
     return line.substr(std::min(line.find_first_not_of("# \t"), line.size()));
   }
 
-  static bool names_a_column(string_view line) {
-    const string_view header = header_of(line.substr(0, 2000));
-    return std::ranges::any_of(columns_of(header, separator_of(header)), [](const Column& column) {
-      return !meaning_of(column, true).names.empty();
-    });
-  }
-
   void read_csv() {
-    remedy_ =
-        "The first line must name the columns x, y, z and, if there are velocities, vx, vy, vz. "
-        "The unit can be m, d, mm, cm or um, as in x_m and vx_m_per_s.";
+    remedy_ = string(kFormats) +
+              " Velocities are vx_m_per_s and so on. The unit can be m, d, mm, cm or um.";
     const string_view header = header_of(lines_.front());
     grains_ = {.header = lines_.front(),
                .columns = columns_of(header, separator_of(header)),
@@ -863,14 +853,15 @@ class PackingReader {
     packing.unit = *unit_;
     packing.not_read = not_read_;
     if (holds(uses_, kVx) || !moving_.rows.empty()) packing.velocity = columns(kVx);
-    Eigen::AlignedBox3d space(packing.position.rowwise().minCoeff().array() - 1,
-                              packing.position.rowwise().maxCoeff().array() + 1);
+    const Eigen::AlignedBox3d extent(packing.position.rowwise().minCoeff().array() - 1,
+                                     packing.position.rowwise().maxCoeff().array() + 1);
+    Eigen::AlignedBox3d space = extent;
     if (box_) {
       const double scale = 1 / diameter();
       space = {box_->planes.min() * scale, box_->planes.max() * scale};
       packing.box = space;
     }
-    const double longest = space.sizes().maxCoeff();
+    const double longest = space.merged(extent).sizes().maxCoeff();
     if (longest > kLongestCell) {
       refuse_file(
           fmt::format("the packing is {:.3g} d long", longest),
@@ -891,9 +882,9 @@ class PackingReader {
     }
     for (Eigen::Index i = 0; i < position.cols(); ++i) {
       const auto& row = rows_[static_cast<std::size_t>(i)];
-      for (const int k : {0, 1, 2}) {
-        const double at = position(k, i), further = k == 2 ? kLongestCell : 0;
-        if (at >= box.min()[k] - further && at <= box.max()[k] + further) continue;
+      for (const int k : {0, 1}) {
+        const double at = position(k, i);
+        if (at >= box.min()[k] && at <= box.max()[k]) continue;
         refuse_line(
             row.line,
             fmt::format(
