@@ -89,6 +89,7 @@ struct Use {
   std::size_t field;
   string_view column;
   double factor;
+  int rank;
 };
 
 struct GrainRow {
@@ -698,56 +699,52 @@ class PackingReader {
       refuse_line(table.header, fmt::format("has {} columns", table.columns.size()),
                   fmt::format("At most {} columns can be read. Leave out some columns.", most));
     }
+    struct Candidate {
+      Column column;
+      Meaning meaning;
+      std::size_t field;  ///< the first field of the column in a row
+    };
+    std::vector<Candidate> candidates;
+    std::size_t fields = 0;
+    for (const Column& column : table.columns) {
+      candidates.push_back({column, meaning_of(column, units_in_names_), fields});
+      fields += static_cast<std::size_t>(column.count);
+    }
+    std::ranges::stable_sort(candidates, {}, [](const auto& one) { return one.meaning.rank; });
     std::vector<Use> uses;
     std::optional<std::optional<LengthUnit>> unit;  // of the columns read so far
-    std::vector<bool> used(table.columns.size());
-    for (const auto rank : {Meaning::listed, Meaning::second_best, Meaning::probable}) {
-      const std::vector<Use> better = uses;
-      std::size_t field = 0;
-      for (std::size_t k = 0; k < used.size(); ++k) {
-        const Column& column = table.columns[k];
-        const auto at = std::exchange(field, field + static_cast<std::size_t>(column.count));
-        Meaning meaning = meaning_of(column, units_in_names_);
-        if (meaning.first == kQuantities || meaning.rank != rank) continue;
-        if (holds(better, meaning.first)) continue;
-        used[k] = true;
-        use(meaning, column, at, uses);
-        if (meaning.first > kDiameter) continue;  // not a length
-        if (!meaning.unit) meaning.unit = stated_unit();
-        if (unit && meaning.unit != *unit) {
-          refuse_part(column.name, "", "is in another unit than the earlier columns",
-                      "Write all lengths in m (x_m) or all in d (x_d).");
-        }
-        unit = meaning.unit;
+    for (auto& [column, meaning, field] : candidates) {
+      const auto other = std::ranges::find(uses, meaning.first, &Use::quantity);
+      if (meaning.first == kQuantities || (other != uses.end() && other->rank < meaning.rank)) {
+        if (lower(column.name) == "unit" || lower(column.name) == "units") refuse_form(column.name);
+        leave(column.name.empty() ? fmt::format("column {}", field + 1) : string(column.name));
+        continue;
       }
+      if (meaning.rank == Meaning::probable && meaning.first != kDiameter) {
+        refuse_part(column.name, "", "cannot be read under this name",
+                    remedy_ + " Or remove this column.");
+      }
+      if (meaning.count != column.count) {
+        refuse_part(column.name, "", fmt::format("has {} values in each row", column.count),
+                    fmt::format("It must have {}.", meaning.count));
+      }
+      for (int k = 0; k < meaning.count; ++k) {
+        if (meaning.first != kDiameter && holds(uses, meaning.first + k)) {
+          refuse_part(column.name, "", "is a column that occurs twice", "Keep one of them.");
+        }
+        uses.push_back({meaning.first + k, field + static_cast<std::size_t>(k), column.name,
+                        meaning.factor, meaning.rank});
+      }
+      if (meaning.first > kDiameter) continue;  // not a length
+      if (!meaning.unit) meaning.unit = stated_unit();
+      if (unit && meaning.unit != *unit) {
+        refuse_part(column.name, "", "is in another unit than the earlier columns",
+                    "Write all lengths in m (x_m) or all in d (x_d).");
+      }
+      unit = meaning.unit;
     }
     if (unit && *unit) set_unit(**unit, table.header);
-    for (std::size_t k = 0; k < used.size(); ++k) {
-      const string_view name = table.columns[k].name;
-      if (used[k]) continue;
-      if (lower(name) == "unit" || lower(name) == "units") refuse_form(name);
-      leave(name.empty() ? fmt::format("column {}", k + 1) : string(name));
-    }
     return uses;
-  }
-
-  void use(const Meaning& meaning, const Column& column, std::size_t at,
-           std::vector<Use>& uses) const {
-    if (meaning.rank == Meaning::probable && meaning.first != kDiameter) {
-      refuse_part(column.name, "", "cannot be read under this name",
-                  remedy_ + " Or remove this column.");
-    }
-    if (meaning.count != column.count) {
-      refuse_part(column.name, "", fmt::format("has {} values in each row", column.count),
-                  fmt::format("It must have {}.", meaning.count));
-    }
-    for (int k = 0; k < meaning.count; ++k) {
-      if (meaning.first != kDiameter && holds(uses, meaning.first + k)) {
-        refuse_part(column.name, "", "is a column that occurs twice", "Keep one of them.");
-      }
-      uses.push_back(
-          {meaning.first + k, at + static_cast<std::size_t>(k), column.name, meaning.factor});
-    }
   }
 
   void require_columns() const {

@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <numbers>
@@ -14,6 +15,7 @@
 #include "core/drive.hpp"
 #include "provenance/io/child_process.hpp"
 #include "provenance/io/file.hpp"
+#include "provenance/io/read_number.hpp"
 
 namespace shearcell {
 namespace {
@@ -401,18 +403,13 @@ State read_lammps_frame(const std::filesystem::path& file, std::size_t grains) {
   const auto require = [&](bool sound) {
     if (!sound) throw ProgramError(file.string() + ": this is not a complete state of the grains");
   };
-  const auto skip_to = [&](std::string_view heading) {
-    std::string line;
-    while (std::getline(text, line) && !line.starts_with(heading)) {
-    }
-  };
+  // Three sections of 2, 2 and 4 lines give the step, the number of atoms and the box; then follows
+  // the line with the names of the columns.
+  std::array<std::string, 9> head;
+  for (std::string& line : head) std::getline(text, line);
   State state;
-  skip_to("ITEM: TIMESTEP");
-  text >> state.step;
-  skip_to("ITEM: NUMBER OF ATOMS");
-  std::size_t atoms = 0;
-  require((text >> atoms) && atoms == grains + 1);
-  skip_to("ITEM: ATOMS");
+  state.step = read_number<std::uint64_t>(head[1]).value_or(0);
+  require(head[8].starts_with("ITEM: ATOMS") && read_number<std::size_t>(head[3]) == grains + 1);
   const auto columns = static_cast<Eigen::Index>(grains);
   state.position.resize(3, columns);
   state.velocity.resize(3, columns);
