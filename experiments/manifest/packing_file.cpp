@@ -573,10 +573,11 @@ class PackingReader {
       const string_view name = trimmed(section.heading.substr(string_view("ITEM:").size()));
       const std::vector<string_view> lines = rows(section.lines);
       const string_view value = trimmed(lines.empty() ? section.heading : lines.front());
+      if (!grains_.rows.empty()) refuse_form(section.heading);  // a second frame
       if (name.starts_with("ATOMS")) {
         grains_.header = section.heading;
         grains_.columns = columns_of(name.substr(string_view("ATOMS").size()));
-        grains_.rows.insert(grains_.rows.end(), lines.begin(), lines.end());
+        grains_.rows = lines;
       } else if (name.starts_with("BOX BOUNDS")) {
         read_dump_box(section.heading, lines);
       } else if (name == "UNITS") {
