@@ -32,8 +32,7 @@ using std::string_view;
 /// What a column can contain. In a kWall column, 0 (in a LAMMPS data file: type 1) marks a grain,
 /// and a larger value marks a wall grain.
 enum Quantity { kX, kY, kZ, kVx, kVy, kVz, kDiameter, kId, kWall, kQuantities };
-constexpr const char* kNamesInMessages[] = {"x",  "y",        "z",  "vx",  "vy",
-                                            "vz", "diameter", "id", "type"};
+constexpr const char* kColumns[] = {"x", "y", "z", "vx", "vy", "vz"};
 
 /// What a column with one of these names contains. If several columns could contain the same
 /// quantity, those with the lowest rank are read.
@@ -395,8 +394,9 @@ class PackingReader {
 
   void read_xyz() {
     remedy_ =
-        "Use the keys Lattice, Origin, Properties (with pos:R:3, and vel:R:3 if there are "
-        "velocities), length_unit and velocity_unit, without blanks around `=`.";
+        "Use the keys Lattice (9 numbers), Origin (3 numbers), Properties (NAME:TYPE:COUNT of each "
+        "column, with pos:R:3, and vel:R:3 if there are velocities), length_unit and "
+        "velocity_unit, without blanks around `=`.";
     const string_view comment = lines_[std::min<std::size_t>(1, lines_.size() - 1)];
     grains_ = {.header = comment,
                .columns = columns_of("species x y z"),
@@ -450,10 +450,7 @@ class PackingReader {
     for (std::size_t k = 0; k < parts.size(); k += 3) {
       const auto count =
           k + 2 < parts.size() ? read_number<std::uint16_t>(parts[k + 2]) : std::nullopt;
-      if (!count || *count == 0) {
-        refuse_part(parts[k], "Properties", "is not a column",
-                    "A column is NAME:TYPE:COUNT, as in species:S:1:pos:R:3.");
-      }
+      if (!count || *count == 0) refuse_form(parts[k]);
       grains_.columns.push_back({parts[k], *count});
     }
   }
@@ -461,9 +458,7 @@ class PackingReader {
   void read_lattice(string_view text, string_view origin) {
     const std::vector<string_view> parts = split(text), corner = split(origin);
     if (parts.size() != 9 || (!corner.empty() && corner.size() != 3)) {
-      refuse_line(grains_.header, "Lattice or Origin is not complete",
-                  "Lattice needs 9 numbers: the edges of the box. Origin needs 3 numbers: the "
-                  "lower corner of the box.");
+      refuse_form(grains_.header);
     }
     Eigen::Matrix3d edges = numbers(parts, "Lattice").reshaped(3, 3);
     const Eigen::Vector3d size = edges.diagonal();
@@ -519,7 +514,7 @@ class PackingReader {
     const std::size_t at = title.find("cell ");
     if (!title.starts_with("LAMMPS data file by shearcell") || at == title.npos) return false;
     const std::vector<string_view> words = split(title.substr(at + 5));
-    if (words.size() != 8) refuse_line(title, "the cell is not complete", "Export the run again.");
+    if (words.size() != 8) refuse_form(title);
     for (const int k : {0, 1, 2}) set_planes(k, words[2U * k], words[2U * k + 1]);
     set_lean(title, number(words[7], "tilt"));
     return true;
@@ -752,8 +747,7 @@ class PackingReader {
     const bool moves = holds(uses_, kVx) || holds(uses_, kVy) || holds(uses_, kVz);
     for (const int q : {kX, kY, kZ, kVx, kVy, kVz}) {
       if (holds(uses_, q) || (q >= kVx && !moves)) continue;
-      refuse_line(grains_.header, fmt::format("the column {} is missing", kNamesInMessages[q]),
-                  remedy_);
+      refuse_line(grains_.header, fmt::format("the column {} is missing", kColumns[q]), remedy_);
     }
   }
 
@@ -778,7 +772,7 @@ class PackingReader {
       for (const Use& use : uses) {
         const auto q = static_cast<std::size_t>(use.quantity);
         const string_view field = unquoted(fields[use.field]);
-        row.value[q] = use.factor * number(field, kNamesInMessages[q]);
+        row.value[q] = use.factor * number(field, use.column);
         if (use.quantity != kDiameter) continue;
         if (std::fabs(row.value[q] - diameter()) <= kTolerance * diameter()) continue;
         refuse_part(field, use.column,
@@ -859,11 +853,14 @@ class PackingReader {
       space = {box_->planes.min() * scale, box_->planes.max() * scale};
       packing.box = space;
     }
-    const double longest = space.merged(extent).sizes().maxCoeff();
-    if (longest > kLongestCell) {
+    const Eigen::Vector3d size = space.merged(extent).sizes();
+    if (size.maxCoeff() > kLongestCell || (box_ && space.sizes().z() < kShallowestCell)) {
       refuse_file(
-          fmt::format("the packing is {:.3g} d long", longest),
-          fmt::format("At most {:g} d are allowed. Is the unit of lengths right?", kLongestCell));
+          fmt::format("box and grains are {:.3g} x {:.3g} x {:.3g} d large", size.x(), size.y(),
+                      size.z()),
+          fmt::format("At most {:g} d are allowed, and at least {:g} d along z. Is the unit "
+                      "of lengths right?",
+                      kLongestCell, kShallowestCell));
     }
     if (box_) require_inside(space, packing.position);
     packing.largest_overlap = check_overlaps(space, packing.position);
@@ -873,11 +870,6 @@ class PackingReader {
   /// Reports a grain outside of the box in x or y as an error. Wraps z into the periodic box.
   void require_inside(const Eigen::AlignedBox3d& box, Eigen::Matrix3Xd& position) const {
     const double depth = box.sizes().z();
-    if (depth < kShallowestCell) {
-      refuse_line(box_->line, fmt::format("the box is {:.3g} d deep in z", depth),
-                  fmt::format("At least {:g} d are needed. Is the unit of lengths right?",
-                              kShallowestCell));
-    }
     for (Eigen::Index i = 0; i < position.cols(); ++i) {
       const auto& row = rows_[static_cast<std::size_t>(i)];
       for (const int k : {0, 1}) {
@@ -887,7 +879,7 @@ class PackingReader {
             row.line,
             fmt::format(
                 "the grain is outside of the box: {} = {:.6g} d is not between {:.6g} and {:.6g} d",
-                kNamesInMessages[k], at, box.min()[k], box.max()[k]),
+                kColumns[k], at, box.min()[k], box.max()[k]),
             "Only z is periodic; x and y have walls. Write a box that contains all grains. In "
             "extended XYZ, Origin is the lower corner of the box (default 0 0 0).");
       }

@@ -54,8 +54,11 @@ const std::string kFormats =
     "Use extended XYZ (its first line is the number of grains), LAMMPS data (with \"500 atoms\" in "
     "its header), a LAMMPS dump, or CSV whose first line names the columns, such as x_m,y_m,z_m.";
 const std::string kXyz =
-    "Use the keys Lattice, Origin, Properties (with pos:R:3, and vel:R:3 if there are velocities), "
-    "length_unit and velocity_unit, without blanks around `=`.";
+    "Use the keys Lattice (9 numbers), Origin (3 numbers), Properties (NAME:TYPE:COUNT of each "
+    "column, with pos:R:3, and vel:R:3 if there are velocities), length_unit and velocity_unit, "
+    "without blanks around `=`.";
+const std::string kSize =
+    "At most 100000 d are allowed, and at least 3 d along z. Is the unit of lengths right?";
 const std::string kData =
     "Write the box as xlo xhi, ylo yhi and zlo zhi, and the sections Atoms (atom_style sphere or "
     "atomic) and Velocities.";
@@ -138,8 +141,7 @@ const std::vector<BadPacking> kBad = {
     {"PropertiesWithoutPositions", "a.xyz", xyz("Properties=species:S:1:radius:R:1", "A 1\nA 1\n"),
      "a.xyz:2:1: the column x is missing. " + kXyz},
     {"PropertiesCut", "a.xyz", xyz("Properties=species:S:1:pos:R", "A 1 1 1\nA 3 3 3\n"),
-     "a.xyz:2:24: Properties: is not a column (got pos). A column is NAME:TYPE:COUNT, as in "
-     "species:S:1:pos:R:3."},
+     "a.xyz:2:24: cannot be read in this form (got pos). " + kXyz + kOrRemove},
     {"PropertiesFlat", "a.xyz", xyz("Properties=pos:R:2", "1 1\n3 3\n"),
      "a.xyz:2:12: has 2 values in each row (got pos). It must have 3."},
     {"KeyTwice", "a.xyz", xyz(kLattice + kLattice, "A 1 1 1\nA 3 3 3\n"),
@@ -151,17 +153,15 @@ const std::vector<BadPacking> kBad = {
      "a.xyz:2:1: the box is not complete, or has an edge that is not positive: 9 x -9 x 9. " +
          kXyz},
     {"BoxIncomplete", "a.xyz", xyz("Lattice=\"9 9 9\"", "A 1 1 1\nA 3 3 3\n"),
-     "a.xyz:2:1: Lattice or Origin is not complete. Lattice needs 9 numbers: the edges of the box. "
-     "Origin needs 3 numbers: the lower corner of the box."},
+     "a.xyz:2:1: cannot be read in this form (got Lattice=\"9 9 9\"). " + kXyz + kOrRemove},
     {"BoxFlat", "a.xyz", xyz("Lattice=\"9 0 0 0 9 0 0 0 2\"", "A 1 1 1\nA 3 3 1\n"),
-     "a.xyz:2:1: the box is 2 d deep in z. At least 3 d are needed. Is the unit of lengths right?"},
+     "a.xyz: box and grains are 9 x 9 x 2 d large. " + kSize},
     {"OutsideOfTheBox", "a.xyz", xyz(kLattice, "A 1 1 1\nA 3 -3 3\n"),
      "a.xyz:4:1: the grain is outside of the box: y = -3 d is not between 0 and 9 d. Only z is "
      "periodic; x and y have walls. Write a box that contains all grains. In extended XYZ, Origin "
      "is the lower corner of the box (default 0 0 0)."},
     {"TooLong", "a.xyz", xyz("", "A 1 1 1\nA 3e9 3 3\n"),
-     "a.xyz: the packing is 3e+09 d long. At most 100000 d are allowed. Is the unit of lengths "
-     "right?"},
+     "a.xyz: box and grains are 3e+09 x 4 x 4 d large. " + kSize},
     {"AtOnePlace", "a.xyz", xyz("", "A 1 1 1\nA 1 1 1\n"),
      "a.xyz:4:1: the grain overlaps the grain in line 3 by 1 d. " + kDeep},
     {"Overlapping", "a.xyz", xyz(kLattice, "A 1 1 1\nA 1.5 1 1\n"),
