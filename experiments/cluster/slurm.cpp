@@ -5,7 +5,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <boost/algorithm/string/replace.hpp>
 #include <cctype>
 #include <cstdlib>
 #include <limits>
@@ -65,15 +64,11 @@ std::string unfit_path(const fs::path& path) {
   const std::string text = path.string();
   const bool fit =
       std::ranges::none_of(text, [](unsigned char c) { return c == '\\' || std::iscntrl(c) != 0; });
-  if (text.size() > kLongest) {
-    return fmt::format("'{:.40}...' has {} bytes; choose a folder whose path has up to {} bytes",
-                       text, text.size(), kLongest);
-  }
-  if (fit) return "";
+  if (fit && text.size() <= kLongest) return "";
   return fmt::format(
-      "{}: Slurm does not accept a path with a backslash, a line feed or another control "
-      "character; choose another folder",
-      text);
+      "{}: Slurm accepts paths of at most {} bytes, without backslashes, line feeds and other "
+      "control characters; choose another folder",
+      printable(text), kLongest);
 }
 
 std::string unfit_value(std::string_view text) {
@@ -138,10 +133,6 @@ std::optional<double> slurm_seconds(const std::string& time) {
   return sum == 0 ? no_limit : sum;
 }
 
-std::string output_pattern(const fs::path& folder, std::string_view file) {
-  return boost::replace_all_copy(folder.string(), "%", "%%") + "/" + std::string(file);
-}
-
 void require_slurm() {
   ask({"sbatch", "--version"});
 }
@@ -151,28 +142,26 @@ std::string queue_job(const Job& job, const fs::path& folder) {
   write_output(folder / job.file, job.script);
   // No time limit: a slow sbatch could still queue the job after this program has given up.
   const ProgramOutcome sbatch = run_program(job.command, folder, kRemoved).value();
+  std::vector<std::string> numbers;
+  std::istringstream lines(sbatch.output);
   std::smatch found;
-  const auto is_number = [&found](const std::string& text) {
-    return text.size() <= kLongest && std::regex_match(text, found, number);
-  };
-  if (sbatch.code == 0 && is_number(sbatch.output)) return found[1];
+  for (std::string line; std::getline(lines, line);) {
+    if (line.size() <= kLongest && std::regex_match(line, found, number)) {
+      numbers.push_back(found[1]);
+    }
+  }
+  if (sbatch.code == 0 && numbers.size() == 1) return numbers.front();
   // Either sbatch failed (perhaps after it queued the job), or it printed more than the job number.
   const std::string failure = fmt::format("sbatch failed: {}", trimmed(sbatch.messages));
-  std::optional<std::vector<QueuedTask>> tasks;
-  std::string queue = "no job of this name is in the queue";
+  std::string queue;
   try {
-    tasks = ask_queue({job.name});
+    const std::vector<QueuedTask> tasks = ask_queue({job.name});
+    if (!tasks.empty()) return tasks.front().job;
   } catch (const ProgramError& error) {
     queue = error.what();
   }
-  if (tasks && !tasks->empty()) return tasks->front().job;
-  if (tasks && sbatch.code != 0) throw ProgramError(failure);
-  std::string last;
-  std::istringstream lines(sbatch.output);
-  for (std::string line; std::getline(lines, line);) {
-    if (is_number(line)) last = found[1];
-  }
-  if (sbatch.code == 0 && !last.empty()) return last;
+  if (queue.empty() && sbatch.code != 0) throw ProgramError(failure);
+  if (sbatch.code == 0 && !numbers.empty()) return numbers.back();
   throw MachineError(fmt::format(
       "{}, and {}. So it is not known whether the job {} is queued. The next `submit` looks for "
       "this job before it queues anything. To see or cancel the job: squeue --name={} or scancel "
@@ -180,7 +169,7 @@ std::string queue_job(const Job& job, const fs::path& folder) {
       sbatch.code != 0 ? failure
                        : fmt::format("sbatch printed '{}' instead of a job number",
                                      printable(trimmed(sbatch.output))),
-      queue, job.name, job.name, job.name));
+      queue.empty() ? "no job of this name is in the queue" : queue, job.name, job.name, job.name));
 }
 
 std::vector<QueuedTask> ask_queue(const std::vector<std::string>& names) {

@@ -32,10 +32,6 @@ std::filesystem::path scratch_here(const std::string& text);
 /// Infinity for "UNLIMITED", "INFINITE" and 0 (no limit). Empty for other texts.
 std::optional<double> slurm_seconds(const std::string& time);
 
-/// Value of sbatch's `--output`. Patterns such as %a work in `file`; each % of the folder is
-/// escaped.
-std::string output_pattern(const std::filesystem::path& folder, std::string_view file);
-
 struct Job {
   std::string name;                  ///< name in the queue
   std::string file;                  ///< file name of the script

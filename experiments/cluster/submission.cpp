@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <boost/algorithm/string/replace.hpp>
 #include <functional>
 #include <random>
 #include <system_error>
@@ -87,9 +88,9 @@ Job complete(Job job, const JobOptions& options, const fs::path& folder, const s
                                       {"--time=", &options.time}}) {
     if (!value->empty()) words.push_back(option + *value);
   }
-  append(std::vector<std::string>{"--nodes=1", "--ntasks=1", "--requeue", "--open-mode=append",
-                                  "--job-name=" + job.name,
-                                  "--output=" + output_pattern(folder, log)});
+  append(std::vector<std::string>{
+      "--nodes=1", "--ntasks=1", "--requeue", "--open-mode=append", "--job-name=" + job.name,
+      "--output=" + boost::replace_all_copy(folder.string(), "%", "%%") + "/" + log});  // %a works
   append(own);
   append(std::vector<std::string>{job.file, fs::read_symlink("/proc/self/exe"), folder});
   append(arguments);
@@ -148,26 +149,20 @@ void Share::add(const Share& other) {
 
 std::vector<Share> shares_of(const std::vector<Plan>& plans, const Store* store) {
   const Rates rates(store == nullptr ? std::vector<Stage>{} : store->stages());
-  std::map<std::string, std::string> packing_of;  // by stage id
-  std::map<std::string, Share> packings;          // what settling costs
   std::vector<Share> shares;
-  std::map<std::string, std::size_t> places;  // packing -> index in `shares`
+  std::map<std::string, std::size_t> places;  // stage -> index in `shares` of its packing
   for (const PlannedStage& one : look_at(plans, store)) {
     const std::string &id = one.stage.id, &parent = one.stage.parent;
-    const std::string packing =
-        parent.empty() ? id : packing_of.try_emplace(parent, parent).first->second;
-    packing_of[id] = packing;
-    const double steps = one.look.particle_steps;
-    Share left{{}, {id}, steps, steps / rates.of(one.stage).particle_steps_per_second};
-    if (parent.empty()) packings[id] = {{}, {}, left.particle_steps, left.core_seconds};
-    if (parent.empty() || one.look.done) continue;
-    const auto [place, fresh] = places.try_emplace(packing, shares.size());
-    if (fresh) {
-      shares.push_back(packings[packing]);  // cost 0 if no plan contains the packing
-      shares.back().packings = {packing};
-    }
-    shares[place->second].add(left);
+    const auto [place, fresh] = places.try_emplace(parent.empty() ? id : parent, shares.size());
+    if (fresh) shares.emplace_back().packings = {place->first};
+    places.emplace(id, place->second);
+    if (!parent.empty() && one.look.done) continue;
+    Share& share = shares[place->second];
+    if (!parent.empty()) share.runs.push_back(id);
+    share.particle_steps += one.look.particle_steps;
+    share.core_seconds += one.look.particle_steps / rates.of(one.stage).particle_steps_per_second;
   }
+  std::erase_if(shares, [](const Share& share) { return share.runs.empty(); });
   return shares;
 }
 

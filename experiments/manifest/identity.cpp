@@ -2,11 +2,13 @@
 #include "experiments/manifest/identity.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <stdexcept>
+#include <vector>
 
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/schema.hpp"
@@ -57,29 +59,6 @@ Stage new_stage(const StageInputs& stage) {
   made.kind = name_of(stage.stage);
   made.grains = stage.parameters.grains;
   return made;
-}
-
-void append_canonical(const json& value, std::string& text) {
-  if (value.is_structured()) {
-    const bool object = value.is_object();  // a std::map, which sorts keys by bytes
-    const char* separator = "";
-    text += object ? '{' : '[';
-    for (const auto& [key, item] : value.items()) {
-      text += separator;
-      if (object) text += json(key).dump() + ':';
-      append_canonical(item, text);
-      separator = ",";
-    }
-    text += object ? '}' : ']';
-  } else if (value.is_number_float()) {
-    const double number = value.get<double>();
-    if (!std::isfinite(number)) throw std::invalid_argument("canonical JSON: not a finite number");
-    std::array<char, 32> digits;
-    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), number + 0.0).ptr;
-    text.append(digits.data(), end);
-  } else {
-    text += value.dump();
-  }
 }
 
 UnreadableRecord damaged(std::string_view key, std::string_view problem) {
@@ -197,9 +176,20 @@ EngineKind engine_of(const json& resolved) {
 }
 
 std::string canonical_json(const json& value) {
-  std::string text;
-  append_canonical(value, text);
-  return text;
+  if (value.is_structured()) {
+    std::vector<std::string> items;
+    for (const auto& [key, item] : value.items()) {  // keys of a std::map, sorted by bytes
+      items.push_back((value.is_object() ? json(key).dump() + ':' : "") + canonical_json(item));
+    }
+    const std::string list = fmt::format("{}", fmt::join(items, ","));
+    return value.is_object() ? '{' + list + '}' : '[' + list + ']';
+  }
+  if (!value.is_number_float()) return value.dump();
+  const double number = value.get<double>();
+  if (!std::isfinite(number)) throw std::invalid_argument("canonical JSON: not a finite number");
+  std::array<char, 32> digits;
+  return {digits.data(),
+          std::to_chars(digits.data(), digits.data() + digits.size(), number + 0.0).ptr};
 }
 
 }  // namespace shearcell

@@ -9,6 +9,7 @@
 #include <cctype>
 #include <cmath>
 #include <map>
+#include <ranges>
 #include <regex>
 #include <span>
 #include <string>
@@ -28,19 +29,15 @@ namespace {
 using std::string;
 using std::string_view;
 
-constexpr LengthUnit kUnits[] = {LengthUnit::m, LengthUnit::d, LengthUnit::mm, LengthUnit::cm,
-                                 LengthUnit::um};
-
 /// What a column can contain. In a kWall column, 0 (in a LAMMPS data file: type 1) marks a grain,
 /// and a larger value marks a wall grain.
 enum Quantity { kX, kY, kZ, kVx, kVy, kVz, kDiameter, kId, kWall, kQuantities };
-constexpr const char* kNamesInMessages[] = {"x",  "y",        "z",  "vx",  "vy",
-                                            "vz", "diameter", "id", "type"};
+constexpr const char* kColumns[] = {"x", "y", "z", "vx", "vy", "vz"};
 
 /// What a column with one of these names contains. If several columns could contain the same
 /// quantity, those with the lowest rank are read.
 struct Meaning {
-  string_view names;        ///< in lower case; if count = 1, name k gives quantity first + k - 1
+  string_view names = {};   ///< in lower case; if count = 1, name k gives quantity first + k - 1
   int first = kQuantities;  ///< first quantity of the column; kQuantities: unknown
   int count = 1;            ///< number of values in the column
   double factor = 1;        ///< 2 for radii
@@ -61,14 +58,12 @@ constexpr Meaning kMeanings[] = {{"x y z", kX},
 // file's text. The position of this part in the text gives the line number for messages.
 
 struct Column {
-  string_view name;             ///< "" for a column without a name
-  int count = 1;                ///< number of values
-  string_view count_text = {};  ///< the count as written in extended XYZ
+  string_view name;  ///< "" for a column without a name
+  int count = 1;     ///< number of values
 };
 
 struct GrainTable {
   string_view header = {};  ///< the line with the names of the columns
-  const char* remedy = "";  ///< remedy in the message about missing columns
   std::vector<Column> columns = {};
   const char* more = nullptr;  ///< what additional values in a row are; null: they are an error
   char separator = ' ';        ///< ' ' means any number of blanks and tabs
@@ -76,18 +71,24 @@ struct GrainTable {
   std::vector<string_view> rows = {};
 };
 
+/// A heading, and the lines up to the next heading.
+struct Section {
+  string_view heading;
+  std::vector<string_view> lines = {};
+};
+
 struct Box {
   string_view line;            ///< last line with a part of the box
   Eigen::AlignedBox3d planes;  ///< empty along axes without bounds
   double lean = 0;             ///< largest component of an edge perpendicular to its axis
-  /// Axes along which LAMMPS fits the box to the grains. A dump's box may be outdated along them.
-  std::array<bool, 3> follows{};
 };
 
 struct Use {
   int quantity;
   std::size_t field;
-  double factor = 1;
+  string_view column;
+  double factor;
+  int rank;
 };
 
 struct GrainRow {
@@ -113,7 +114,7 @@ std::size_t field_end(string_view text, string_view separators) {
   return text.find_first_of(separators, from);
 }
 
-std::vector<string_view> split(string_view text, char separator) {
+std::vector<string_view> split(string_view text, char separator = ' ') {
   const bool blank = separator == ' ';
   std::vector<string_view> fields;
   for (;;) {
@@ -129,81 +130,72 @@ std::vector<string_view> split(string_view text, char separator) {
 /// The unit with this name in lower case, or nothing. The micro sign is not the Greek letter.
 std::optional<LengthUnit> unit_of(string_view name) {
   if (name == "\u00b5m" || name == "\u03bcm") return LengthUnit::um;
-  static const std::regex metres("(milli|centi|micro)?met(er|re)s?");
-  const string text(name.substr(0, 64));
-  if (std::smatch found; std::regex_match(text, found, metres)) {
-    const string prefix = found[1];
-    return prefix.empty()      ? LengthUnit::m
-           : prefix == "milli" ? LengthUnit::mm
-           : prefix == "centi" ? LengthUnit::cm
-                               : LengthUnit::um;
-  }
   if (name == "si") return LengthUnit::m;
   return name == "cgs" ? LengthUnit::cm : value_of<LengthUnit>(name);
 }
 
-/// `units`: whether listed names may end in a unit, as in x_m. `count`: the number of values in the
-/// column. A name that is not listed can still be recognized as a diameter, which is only checked,
-/// or as a position or velocity, which is refused: earlier versions ignored such velocities, so
-/// reading them now would change packings with known ids. For the same reason, columns such as x_mm
-/// or "x [m]" are only read if there is no x, x_m or x_d.
-Meaning meaning_of(string_view column, bool units, int count = 1) {
-  // A prefix that LAMMPS uses, the stem of the name, and a unit or an index.
-  static const std::regex parts(
-      "([cf]_|d2?_(?=...)|v_(?!(?:[xyzmd]|.m)(?:\\W|_|$)))?(.+?)"
-      "((?:[ _]|[ _]*[\\[(])(d|[mcu]?m|\u00b5m|\u03bcm)(_per_s|/s)?[\\])]?|"
-      "[ _]*[\\[({/:.].*|[ _](m|d|si|lj|.?.m)([ _]?(per|p)?[ _]?s)?)?");
-  static const string grain = "(?:particle|grain|sphere|atom|bead|ball)?";
-  static const string other = "(?!max|min|cut|.*(?:curvature|gyration|ratio))";
-  static const std::regex radius(grain + "(?:r|rads?)|rp|" + other + ".*(?:radius|radii).*");
-  static const std::regex diameter(grain + "(?:d|dias?|sizes?|sigma)|dp|durchmesser|" +
-                                   "shape[xyz]|" + other + ".*diam(?!o).*");
+/// `units`: whether listed names may end in a unit, as in x_m. A name that is not listed can still
+/// be recognized as a diameter, which is only checked, or as a position or velocity, which is
+/// refused: earlier versions ignored such velocities, so reading them now would change packings
+/// with known ids. For the same reason, columns such as x_mm or "x [m]" are only read if there is
+/// no x, x_m or x_d.
+Meaning meaning_of(const Column& column, bool units) {
+  static const std::regex with_unit(
+      "(.+?)([ _]|[ _]*[\\[(])(d|[mcu]?m|\u00b5m|\u03bcm)(_per_s|/s)?[\\])]?");
+  // A prefix that LAMMPS or a user writes before a name, and an index or a unit after it.
+  static const string before = "([cfv]_|d2?_)?(particle|grain|sphere|atom|bead|ball)?[ _]?(";
+  static const string after =
+      ")([ _]*[\\[({/:.].*|[ _]([xyz0-9]|m|d|si|lj|.?.m)([ _]?(per|p)?[ _]?s)?)?";
+  static const string size = "(?!.*(max|min|cut|curvature|gyration|ratio)).*";
+  static const std::regex radius(before + "r|rads?|rp" + after + "|" + size + "radi(us|i).*");
+  static const std::regex diameter(before + "d|dp|dias?|sizes?|sigma|shape[xyz]" + after + "|" +
+                                   size + "diam(?!o).*");
   static const std::regex velocity(
       "(?!.*(ang|rot|omega|spin|vir|vor))"
-      "((v|mom|speed)[xyz0-9]?|[pu][xyz\\[]|v(cm|el|lin|avg)?[xyz]u?|vel.*|[xyz](v|vel|dot)|"
-      "d([xyzr]|pos)dt|.*(veloc|momenta|momentum).*)");
+      "(" +
+      before + "(v|mom|speed)[xyz0-9]?|v(cm|el|lin|avg)?[xyz]u?|[xyz](v|vel|dot)" + after +
+      "|[pu][ _]?([xyz]|[:.\\[(][0-3xyz][\\])]?)|d([xyzr]|pos)/?dt|([cf]_)?vel.*|"
+      ".*(veloc|momenta|momentum).*)");
   static const std::regex position(
-      "(pos|positions?|coords?|coordinates?|points?)[xyz0-9\\[]?|[xyz](su?|pos|coord)");
-  const string name = lower(column);
-  std::smatch found;
-  if (name.size() > 64 || !std::regex_match(name, found, parts)) return {};  // limits recursion
-  string stem = found[2];
-  const auto unit = unit_of(found.str(4));
-  const bool may_be_listed = found.length(1) == 0 && (found.length(3) == 0 || (units && unit));
+      before + "(pos|positions?|coords?|coordinates?|points?)[xyz0-9]?|[xyz](su?|pos|coord)" +
+      after);
+  const string full = lower(column.name);
+  string name = full;
+  if (name.size() > 64) return {};  // limits the recursion
+  std::optional<LengthUnit> unit;
+  bool usual = true;
+  if (std::smatch parts; units && std::regex_match(name, parts, with_unit)) {
+    unit = unit_of(parts.str(3));
+    usual = parts[2] == "_" && parts.length(3) == 1;
+    name = parts.str(1);
+  }
   for (Meaning meaning : kMeanings) {
-    const std::vector<string_view> names = split(meaning.names, ' ');
-    const auto at = std::ranges::find(names, stem) - names.begin();
-    if (!may_be_listed || at == std::ssize(names)) continue;
+    const std::vector<string_view> names = split(meaning.names);
+    const auto at = std::ranges::find(names, name) - names.begin();
+    if (at == std::ssize(names)) continue;
     meaning.unit = unit;
-    if (unit && (!found.str(3).starts_with('_') || found.length(4) > 1)) {
-      meaning.rank = Meaning::second_best;
-    }
+    if (!usual) meaning.rank = Meaning::second_best;
+    if (meaning.count > column.count && column.count == 1) meaning.rank = Meaning::probable;
     if (meaning.count == 1) meaning.first += static_cast<int>(at);
     return meaning;
   }
-  const string suffix = found[3];
-  const bool component = count == 3 || (suffix.size() > 1 && suffix.size() < 4 &&
-                                        string_view("0123xyz").find(suffix[1]) != string::npos);
-  Meaning meaning;
-  meaning.rank = Meaning::probable;
-  meaning.unit = unit;
-  for (string text : {stem, component ? stem + '[' : stem, stem + suffix}) {
-    std::erase_if(text, [](unsigned char c) { return std::isalnum(c) == 0 && c != '['; });
-    // Columns such as c_p[1] are a stress of each atom, or displacements, in files of LAMMPS.
-    const bool tensor = found.length(1) > 0 && text.size() == 2 && text[1] == '[';
-    if (std::regex_match(text, radius)) meaning.factor = 2;
-    meaning.first = meaning.factor > 1 || std::regex_match(text, diameter) ? kDiameter
-                    : std::regex_match(text, velocity) && !tensor          ? kVx
-                    : std::regex_match(text, position)                     ? kX
-                                                                           : kQuantities;
-    if (meaning.first != kQuantities) break;
-  }
-  return meaning;
+  if (column.count == 3) name += "[0]";
+  const auto is = [&](const std::regex& kind) {
+    return std::regex_match(name, kind) || std::regex_match(full, kind);
+  };
+  return {.first = is(radius) || is(diameter) ? kDiameter
+                   : is(velocity)             ? kVx
+                   : is(position)             ? kX
+                                              : kQuantities,
+          .factor = is(radius) ? 2.0 : 1.0,
+          .rank = Meaning::probable,
+          .unit = unit};
 }
 
-/// Whether a name, such as a key, concerns the box, a unit or the kind of the coordinates.
-bool concerns_geometry(string_view name) {
-  static const std::regex geometry(
+/// Whether a part of a file that is not read, such as a key or a section, concerns the box, a unit,
+/// the kind of the coordinates, the velocities or the shape of the grains.
+bool concerns_grains(string_view name) {
+  static const std::regex concerns(
       "(^|[^a-z]|super)lattice|(^|[^a-z]|sim|super)box|origin($|[^a-z])|"
       "(^|[^a-z]|unit|super|sim)cell(?!_height_d$|_?id)|^properties$|"
       "^columns$|^(l|len|length|size)_?[xyz]$|^[xyz]_?(lo|hi|min|max|len|length|size)($|[^a-z])|"
@@ -211,8 +203,9 @@ bool concerns_geometry(string_view name) {
       "^(?!energy|force|stress|pressure|mass|charge|temp|formula|angle|density|freq|dipole|virial)"
       "(.*[^a-z])?"
       "(length|distance|position|velocity|time)?units?"
-      "($|_?(of|length|distance|position|velocity|time|system|style))");
-  return std::regex_search(lower(name.substr(0, 64)), geometry);  // limits the recursion
+      "($|_?(of|length|distance|position|velocity|time|system|style))|"
+      "^atoms$|^vel|(^| )(ellipsoids|lines|triangles|bodies)$");
+  return std::regex_search(lower(name.substr(0, 64)), concerns);  // limits the recursion
 }
 
 /// Whether the text has as many numbers in a row as the edges and angles of a box: 6 or 9.
@@ -221,7 +214,7 @@ bool may_be_box(string text) {
       text, [](char c) { return string_view(",;\"'{}[]()").find(c) != string::npos; }, ' ');
   text += " end";
   std::size_t row = 0;
-  for (const string_view word : split(text, ' ')) {
+  for (const string_view word : split(text)) {
     const bool number = read_number<double>(word).has_value();
     if (!number && (row == 6 || row == 9)) return true;
     row = number ? row + 1 : 0;
@@ -241,27 +234,27 @@ class PackingReader {
     }
     check_characters(text_, file_, "Save the positions as text: extended XYZ, LAMMPS data or CSV.");
     if (text_.starts_with("\xEF\xBB\xBF")) text_.remove_prefix(3);
-    rest_ = text_;
-    if (trimmed(rest_).empty()) refuse_file("is empty", kFormats);
-    const string_view first = rest_.substr(0, rest_.find('\n'));
+    if (trimmed(text_).empty()) refuse_file("is empty", kFormats);
+    for (string_view rest = text_; !rest.empty();) {
+      const string_view line = rest.substr(0, rest.find('\n'));
+      lines_.push_back(line.substr(0, line.size() - (line.ends_with('\r') ? 1 : 0)));
+      rest.remove_prefix(std::min(line.size() + 1, rest.size()));
+    }
+    static const std::regex states_atoms("[0-9][ \\t]+atoms");
+    const string_view first = lines_.front();
     if (read_number<std::uint64_t>(trimmed(first))) {
       read_xyz();
     } else if (first.starts_with("ITEM:")) {
       read_dump();
-    } else if (states_atoms()) {
+    } else if (std::regex_search(string(text_.substr(0, 2000)), states_atoms)) {
       read_data();
-    } else if (file_.ends_with(".csv") || names_a_column(first)) {
-      read_csv();
     } else {
-      refuse_file("is not in a format that can be read", kFormats);
+      read_csv();
     }
     return packing();
   }
 
  private:
-  static constexpr const char* kEdges = "gives the box by edge vectors, which cannot be read";
-  static constexpr const char* kStyles = "Write the data file with atom_style sphere or atomic.";
-  static constexpr const char* kBounds = "Write the box as xlo xhi, ylo yhi and zlo zhi.";
   static constexpr const char* kFormats =
       "Use extended XYZ (its first line is the number of grains), LAMMPS data (with \"500 atoms\" "
       "in its header), a LAMMPS dump, or CSV whose first line names the columns, such as "
@@ -282,80 +275,71 @@ class PackingReader {
   [[noreturn]] void refuse_line(string_view in, const string& problem, const string& remedy) const {
     refuse(file_, {place(in).line, 1}, "", problem, "", remedy);
   }
-  [[noreturn]] void refuse_part(string_view part, const string& key, const string& problem,
+  [[noreturn]] void refuse_part(string_view part, string_view key, const string& problem,
                                 const string& remedy) const {
-    refuse(file_, place(part), key, problem, printable(part), remedy);
+    refuse(file_, place(part), string(key), problem, printable(part), remedy);
   }
 
-  bool next_line() {
-    if (rest_.empty()) return false;
-    const std::size_t end = std::min(rest_.find('\n'), rest_.size());
-    line_ = rest_.substr(0, end);
-    if (line_.ends_with('\r')) line_.remove_suffix(1);
-    rest_.remove_prefix(std::min(end + 1, rest_.size()));
-    return true;
-  }
-
-  void require_line(const string& of) {
-    if (!next_line()) refuse_line(line_, "the file ends after this line", "It lacks " + of + ".");
-  }
-
-  double number(string_view part, const char* name) const {
+  double number(string_view part, string_view name) const {
     const bool sign = part.size() > 1 && part.front() == '+' && part[1] != '-';
     const auto value = read_number<double>(part.substr(sign ? 1 : 0));
     if (value && std::fabs(*value) <= kLargest) return *value;
-    if (value) {
-      refuse_part(part, name, "is not finite, or is larger than 1e100",
-                  "Remove this grain, or correct the value.");
-    }
-    if (part.find(',') != part.npos && part.find_first_not_of("+-0123456789,eE") == part.npos) {
-      string point(part);
-      std::ranges::replace(point, ',', '.');
-      refuse_part(part, name, "is not a number", "Write a decimal point: " + point + ".");
-    }
-    refuse_part(part, name, "is not a number",
-                "Write the number in decimal digits, such as 1.5e-3.");
+    refuse_part(part, name, "is not a number between -1e100 and 1e100",
+                "Write the number with a decimal point, such as 1.5e-3.");
   }
 
-  Eigen::VectorXd numbers(std::span<const string_view> words, const char* name) const {
+  Eigen::VectorXd numbers(std::span<const string_view> words, string_view name) const {
     Eigen::VectorXd all(static_cast<Eigen::Index>(words.size()));
     std::ranges::transform(words, all.begin(), [&](auto word) { return number(word, name); });
     return all;
   }
 
-  /// Reads the rest of the file, one grain in each line. `count` is the number of grains that the
-  /// file announces, if it does, in the line that contains `stated_in`.
-  void read_rows(std::optional<std::uint64_t> count = {}, string_view stated_in = {}) {
-    while (next_line()) {
-      if (!trimmed(line_).empty()) grains_.rows.push_back(line_);
+  /// The lines that are not blank, without comments.
+  static std::vector<string_view> rows(std::span<const string_view> lines, char comment = '\0') {
+    std::vector<string_view> found;
+    for (string_view line : lines) {
+      line = line.substr(0, line.find(comment));
+      if (!trimmed(line).empty()) found.push_back(line);
     }
-    const std::size_t found = grains_.rows.size();
-    if (!count || found == *count) return;
-    const int at = place(stated_in).line;
-    if (found < *count) {
-      refuse_line(line_,
-                  fmt::format("the file ends after {} of the {} grains announced in line {}", found,
-                              *count, at),
-                  "Use a complete file, or correct the number of grains.");
-    }
-    refuse_line(
-        grains_.rows[*count],
-        fmt::format("the file continues after the {} grains announced in line {}", *count, at),
-        "Keep one frame, or correct the number of grains.");
+    return found;
   }
 
-  Box& box() {
+  /// The sections of the file. The first line of the file is a heading.
+  std::vector<Section> sections(bool (*is_heading)(string_view line)) const {
+    std::vector<Section> all;
+    for (const string_view line : lines_) {
+      if (all.empty() || is_heading(trimmed(line))) {
+        all.push_back({trimmed(line)});
+      } else {
+        all.back().lines.push_back(line);
+      }
+    }
+    return all;
+  }
+
+  void require_count(string_view stated) const {
+    if (read_number<std::uint64_t>(stated) == grains_.rows.size()) return;
+    refuse_part(stated, "",
+                fmt::format("is not the number of rows in this file, {}", grains_.rows.size()),
+                "Use a complete file of one frame, or correct the number of grains.");
+  }
+
+  Box& box(string_view line) {
     if (!box_) box_.emplace();
-    box_->line = line_;
+    box_->line = line;
     return *box_;
   }
 
   void set_planes(Eigen::Index axis, string_view low, string_view high) {
-    box().planes.min()[axis] = number(low, "box");
-    box().planes.max()[axis] = number(high, "box");
+    Eigen::AlignedBox3d& planes = box(low).planes;
+    planes.min()[axis] = number(low, "box");
+    planes.max()[axis] = number(high, "box");
   }
 
-  void set_lean(double by) { box().lean = std::max(box().lean, std::fabs(by)); }
+  void set_lean(string_view line, double by) {
+    double& lean = box(line).lean;
+    lean = std::max(lean, std::fabs(by));
+  }
 
   static std::vector<Column> columns_of(string_view header, char separator = ' ') {
     std::vector<Column> columns;
@@ -363,25 +347,25 @@ class PackingReader {
     return columns;
   }
 
+  /// Lists a part of the file as not read.
   void leave(string_view name) {
     constexpr std::size_t most = 100;
     if (name.empty() || not_read_.size() == most) return;
     if (std::ranges::count(not_read_, printable(name)) == 0) not_read_.push_back(printable(name));
   }
 
-  /// The place of the mark that closes the first mark of the text; brackets may be nested.
-  static std::size_t close_of(string_view text, char close) {
-    if (text.front() == close) return text.find(close, 1);
-    int depth = 0;
-    for (std::size_t k = 0; k < std::min<std::size_t>(text.size(), 4096); ++k) {  // limits the time
-      depth += text[k] == text.front() ? 1 : text[k] == close ? -1 : 0;
-      if (depth == 0) return k;
-    }
-    return text.npos;
+  [[noreturn]] void refuse_form(string_view part) const {
+    refuse_part(part, "", "cannot be read in this form", remedy_ + " Or remove this part.");
   }
 
-  /// The pairs KEY=VALUE of a comment, and the text between pairs as values without key. Blanks may
-  /// be around `=`, and quotes or brackets around VALUE.
+  /// Lists a part of the file as not read, or refuses the part if it may concern the grains.
+  void leave_or_refuse(string_view part) {
+    if (concerns_grains(part)) refuse_form(part);
+    leave(part);
+  }
+
+  /// The pairs KEY=VALUE of a comment, and the words between pairs as values without key. Blanks
+  /// may be around `=`, and quotes or brackets around VALUE.
   static std::vector<std::pair<string_view, string_view>> pairs_of(string_view rest) {
     const auto cut = [&](std::size_t size) {
       const string_view front = rest.substr(0, size);
@@ -393,17 +377,13 @@ class PackingReader {
       const string_view key = cut(rest.find_first_of("= \t,;\"'"));
       cut(rest.find_first_not_of(" \t,;\"'"));
       if (!rest.starts_with('=')) {
-        if (key.empty()) continue;
-        const bool follows = !pairs.empty() && pairs.back().first.empty();
-        const char* from = follows ? pairs.back().second.data() : key.data();
-        if (follows) pairs.pop_back();
-        pairs.emplace_back("", string_view(from, key.data() + key.size()));
+        if (!key.empty()) pairs.emplace_back("", key);
         continue;
       }
       cut(1);
       const bool blank = !cut(rest.find_first_not_of(" \t")).empty();
       const std::size_t mark = rest.empty() ? rest.npos : string_view("\"'{[(").find(rest.front());
-      const std::size_t end = mark == rest.npos ? mark : close_of(rest, "\"'}])"[mark]);
+      const std::size_t end = mark == rest.npos ? mark : rest.find("\"'}])"[mark], 1);
       const string_view word =
           rest.substr(0, end == rest.npos ? rest.find_first_of(" \t,;") : end + 1);
       const bool of_next = blank && end == rest.npos && word.find('=') != word.npos;  // "a= b=1"
@@ -413,51 +393,54 @@ class PackingReader {
   }
 
   void read_xyz() {
-    next_line();
-    const string_view counted_in = line_;
-    require_line("the comment and the grains");
-    grains_ = {.header = line_,
-               .remedy = "Properties must contain pos:R:3, and vel:R:3 if there are velocities.",
+    remedy_ =
+        "Use the keys Lattice (9 numbers), Origin (3 numbers), Properties (NAME:TYPE:COUNT of each "
+        "column, with pos:R:3, and vel:R:3 if there are velocities), length_unit and "
+        "velocity_unit, without blanks around `=`.";
+    const string_view comment = lines_[std::min<std::size_t>(1, lines_.size() - 1)];
+    grains_ = {.header = comment,
                .columns = columns_of("species x y z"),
-               .more = "further columns"};
+               .more = "further columns",
+               .rows = rows(std::span(lines_).subspan(std::min<std::size_t>(2, lines_.size())))};
     static constexpr string_view keys[] = {"Lattice", "Origin", "Properties", "length_unit",
                                            "velocity_unit"};
     static const std::regex other(
         "pbc|.*(stress|virial|strain|force|field|gravity|polari|moment|magmom).*",
         std::regex::icase);
     std::map<string_view, string_view> values;
-    for (const auto& [key, value] : pairs_of(line_)) {
+    string words;
+    for (const auto& [key, value] : pairs_of(comment)) {
+      if (key.empty()) words.append(" ").append(value);
       const bool box =
           may_be_box(string(value)) && !std::regex_match(string(key.substr(0, 64)), other);
       // ASE writes unit_cell=conventional beside the lattice.
       const bool word = key == "unit_cell" && value.find_first_of("0123456789") == value.npos;
-      if (word || (!box && !concerns_geometry(key))) {
-        if (key != "pbc" || value != "\"F F T\"") leave(key.empty() ? "comment" : key);
+      if (word || (!box && !concerns_grains(key))) {
+        if (key != "pbc" || value != "\"F F T\"") leave(key);
         continue;
       }
       const bool blanks = value.data() != key.data() + key.size() + 1;
       if (std::ranges::count(keys, key) == 0 || (blanks && !key.ends_with("unit"))) {
-        refuse_part(
-            key.empty() ? value : key, "", "cannot be read in this form",
-            fmt::format("Use one of the keys {}, without blanks around `=`, or remove this part.",
-                        fmt::join(keys, ", ")));
+        refuse_form(key);
       }
       const bool quoted = value.size() > 1 && (value.front() == '"' || value.front() == '\'');
       if (!values.emplace(key, quoted ? value.substr(1, value.size() - 2) : value).second) {
         refuse_part(key, "", "is a key that occurs twice", "Keep one of them.");
       }
     }
-    take_text("unit");
+    if (may_be_box(words)) refuse_form(comment);
+    if (!words.empty()) leave("comment");
+    take_units_of_text(comment);
     for (const char* key : {"length_unit", "velocity_unit"}) {
       const string_view unit = values[key];
       if (unit.data() == nullptr) continue;
-      take_unit(key, unit.substr(0, unit.size() - (unit.ends_with("/s") ? 2 : 0)));
+      take_unit(unit.substr(0, unit.size() - (unit.ends_with("/s") ? 2 : 0)));
     }
     if (values.contains("Lattice") || values.contains("Origin")) {
       read_lattice(values["Lattice"], values["Origin"]);
     }
     if (values.contains("Properties")) read_properties(values["Properties"]);
-    read_rows(read_number<std::uint64_t>(trimmed(counted_in)), counted_in);
+    require_count(trimmed(lines_.front()));
   }
 
   void read_properties(string_view text) {
@@ -467,85 +450,73 @@ class PackingReader {
     for (std::size_t k = 0; k < parts.size(); k += 3) {
       const auto count =
           k + 2 < parts.size() ? read_number<std::uint16_t>(parts[k + 2]) : std::nullopt;
-      if (!count || *count == 0) {
-        refuse_part(parts[k], "Properties", "is not a column",
-                    "A column is NAME:TYPE:COUNT, as in species:S:1:pos:R:3.");
-      }
-      grains_.columns.push_back({parts[k], *count, parts[k + 2]});
+      if (!count || *count == 0) refuse_form(parts[k]);
+      grains_.columns.push_back({parts[k], *count});
     }
   }
 
   void read_lattice(string_view text, string_view origin) {
-    const std::vector<string_view> parts = split(text, ' '), corner = split(origin, ' ');
+    const std::vector<string_view> parts = split(text), corner = split(origin);
     if (parts.size() != 9 || (!corner.empty() && corner.size() != 3)) {
-      refuse_line(line_, "Lattice or Origin is not complete",
-                  "Lattice needs 9 numbers: the edges of the box. Origin needs 3 numbers: the "
-                  "lower corner of the box.");
+      refuse_form(grains_.header);
     }
     Eigen::Matrix3d edges = numbers(parts, "Lattice").reshaped(3, 3);
     const Eigen::Vector3d size = edges.diagonal();
     Eigen::Vector3d low(0, 0, 0);
     if (!corner.empty()) low = numbers(corner, "Origin");
     edges.diagonal().setZero();
-    set_lean(edges.cwiseAbs().maxCoeff());
+    set_lean(grains_.header, edges.cwiseAbs().maxCoeff());
     box_->planes = {low, low + size};
   }
 
-  /// Whether one of the first lines gives a number of atoms, for example "500 atoms".
-  bool states_atoms() const {
-    static const std::regex count("[0-9][ \\t]+atoms");
-    return std::regex_search(string(rest_.substr(0, 2000)), count);
-  }
-
   void read_data() {
-    next_line();
-    const bool ours = read_title();
-    std::uint64_t count = 0;
-    string_view stated_in = line_;
-    grains_ = {.header = line_, .columns = columns_of("x y z")};
+    remedy_ =
+        "Write the box as xlo xhi, ylo yhi and zlo zhi, and the sections Atoms (atom_style sphere "
+        "or atomic) and Velocities.";
+    const std::vector<Section> all = sections([](string_view line) {
+      return !line.empty() && std::isalpha(static_cast<unsigned char>(line.front())) != 0;
+    });
+    const Section& header = all.front();
+    grains_.header = header.heading;
     moving_ = {.columns = columns_of("id vx vy vz"), .more = "angular velocities"};
-    string section, style;
-    while (next_line()) {
-      if (section.empty()) take_text("units");
-      const std::size_t comment = std::min(line_.find('#'), line_.size());
-      const string_view body = trimmed(line_.substr(0, comment));
-      if (body.empty()) continue;
-      if (std::isalpha(static_cast<unsigned char>(body.front())) != 0) {
-        section = body;
-        style = trimmed(line_.substr(std::min(comment + 1, line_.size())));
-        if (section != "Atoms" && section != "Velocities") leave_of_data(body);
-      } else if (section.empty()) {
-        const std::vector<string_view> words = split(body, ' ');
-        if (words.size() == 2 && words[1] == "atoms") {
-          count = read_number<std::uint64_t>(words[0]).value_or(0);
-          stated_in = line_;
-        } else if (!ours) {
-          read_bounds(body, words);
-        }
-      } else if (section == "Atoms") {
-        if (grains_.rows.empty()) take_style(style, split(body, ' ').size(), ours);
-        grains_.rows.push_back(body);
-      } else if (section == "Velocities") {
-        moving_.rows.push_back(body);
+    const bool ours = read_title(header.heading);
+    for (const string_view line : header.lines) take_units_of_text(line);
+    string_view count = header.heading;
+    for (const string_view line : rows(header.lines, '#')) {
+      const std::vector<string_view> words = split(line);
+      if (words.size() == 2 && words[1] == "atoms") {
+        count = words[0];
+      } else if (!ours) {
+        read_bounds(trimmed(line), words);
       }
     }
-    if (grains_.rows.size() != count) {
-      refuse_line(stated_in,
-                  fmt::format("declares {} atoms, but the file has {}", count, grains_.rows.size()),
-                  "Use a complete file, or correct the number of atoms.");
+    for (const Section& section : all | std::views::drop(1)) {
+      const std::size_t mark = std::min(section.heading.find('#'), section.heading.size());
+      const string_view name = trimmed(section.heading.substr(0, mark));
+      if (name == "Atoms") {
+        grains_.rows = rows(section.lines, '#');
+        if (grains_.rows.empty()) continue;
+        const std::size_t after = std::min(mark + 1, section.heading.size());
+        take_style(trimmed(section.heading.substr(after)), ours);
+      } else if (name == "Velocities") {
+        moving_.rows = rows(section.lines, '#');
+      } else {
+        leave_or_refuse(name);
+      }
     }
+    require_count(count);
   }
 
   /// Reads the units from the title and, in an export of this program, the planes of the cell.
   /// Returns whether the file is such an export.
-  bool read_title() {
-    take_text("units");
-    const std::size_t at = line_.find("cell ");
-    if (!line_.starts_with("LAMMPS data file by shearcell") || at == line_.npos) return false;
-    const std::vector<string_view> words = split(line_.substr(at + 5), ' ');
-    if (words.size() != 8) refuse_line(line_, "the cell is not complete", "Export the run again.");
+  bool read_title(string_view title) {
+    take_units_of_text(title);
+    const std::size_t at = title.find("cell ");
+    if (!title.starts_with("LAMMPS data file by shearcell") || at == title.npos) return false;
+    const std::vector<string_view> words = split(title.substr(at + 5));
+    if (words.size() != 8) refuse_form(title);
     for (const int k : {0, 1, 2}) set_planes(k, words[2U * k], words[2U * k + 1]);
-    set_lean(number(words[7], "tilt"));
+    set_lean(title, number(words[7], "tilt"));
     return true;
   }
 
@@ -553,37 +524,21 @@ class PackingReader {
   void read_bounds(string_view line, const std::vector<string_view>& words) {
     const string_view low = words.size() == 4 && words[2].ends_with("lo") ? words[2] : "";
     const std::size_t axis = low.empty() ? low.npos : string_view("xyz").find(low.front());
-    if (words.back().ends_with("vec")) refuse_part(words.back(), "", kEdges, kBounds);
     if (words.size() == 6 && words[3] == "xy") {
-      set_lean(numbers(std::span(words).first(3), "tilt").cwiseAbs().maxCoeff());
+      set_lean(line, numbers(std::span(words).first(3), "tilt").cwiseAbs().maxCoeff());
     } else if (axis != string_view::npos) {
       set_planes(static_cast<Eigen::Index>(axis), words[0], words[1]);
     } else if (words.size() > 1 && read_number<double>(words[1])) {
-      refuse_part(line, "", "cannot be read in this form", kBounds);
+      refuse_form(line);
     } else if (words[0] != "0" && words.back() != "types") {
-      leave_of_data(line);
+      leave_or_refuse(line);
     }
-  }
-
-  /// Refuses or leaves a line of the header, or a section.
-  void leave_of_data(string_view part) {
-    static const std::regex shapes("(.* )?(ellipsoids|lines|triangles|bodies)");
-    static const std::regex tables("atoms|vel.*");
-    const string text = lower(part.substr(0, 64));
-    if (std::regex_match(text, shapes)) {
-      refuse_part(part, "", "describes grains that are not spheres", kStyles);
-    }
-    const bool table = std::regex_match(text, tables);
-    if (table || concerns_geometry(part)) {
-      refuse_part(part, "", "cannot be read in this form",
-                  table ? "Name the section Atoms or Velocities, or remove it." : kBounds);
-    }
-    leave(part);
   }
 
   /// Sets the columns by the atom style that LAMMPS writes after "Atoms #". If the file gives no
   /// style, the number of fields decides.
-  void take_style(string_view style, std::size_t fields, bool ours) {
+  void take_style(string_view style, bool ours) {
+    const std::size_t fields = split(grains_.rows.front()).size();
     const bool five = fields == 5 || fields == 8, seven = fields == 7 || fields == 10;
     if (style.empty()) style = five ? "atomic" : seven ? "sphere" : style;
     if (style == "hybrid" && seven) style = "hybrid sphere";  // write_data omits substyles
@@ -592,10 +547,10 @@ class PackingReader {
                           : style.starts_with("hybrid sphere") ? "id type x y z diameter density"
                                                                : nullptr;
     if (columns == nullptr) {
-      refuse_line(line_,
-                  style.empty() ? fmt::format("atoms with {} fields cannot be read", fields)
-                                : fmt::format("the atom style {} cannot be read", printable(style)),
-                  kStyles);
+      refuse_line(grains_.rows.front(),
+                  fmt::format("atoms of style '{}' with {} fields cannot be read", printable(style),
+                              fields),
+                  remedy_);
     }
     grains_.columns = columns_of(columns);
     grains_.more = "image flags";
@@ -604,61 +559,43 @@ class PackingReader {
   }
 
   void read_dump() {
-    std::optional<std::uint64_t> count;
-    string_view stated_in;
-    while (next_line()) {
-      const string_view item = trimmed(line_);
-      if (item.starts_with("ITEM: ATOMS")) {
-        if (!count) refuse_line(line_, "the number of atoms is missing", "Use a complete dump.");
-        grains_ = {
-            .header = line_,
-            .remedy =
-                "Write these columns: dump ... custom ... id x y z vx vy vz. Scaled coordinates, "
-                "such as xs, cannot be read.",
-            .columns = columns_of(item.substr(string_view("ITEM: ATOMS").size()))};
-        return read_rows(count, stated_in);
-      }
-      if (!item.starts_with("ITEM:")) continue;
-      const string_view name = trimmed(item.substr(string_view("ITEM:").size()));
-      if (item.starts_with("ITEM: BOX BOUNDS")) {
-        read_dump_box(item);
+    remedy_ =
+        "Write ITEM: BOX BOUNDS and ITEM: UNITS as LAMMPS does, and the columns id x y z vx vy vz, "
+        "not scaled.";
+    string_view count = lines_.front();
+    for (const Section& section :
+         sections([](string_view line) { return line.starts_with("ITEM:"); })) {
+      const string_view name = trimmed(section.heading.substr(string_view("ITEM:").size()));
+      const std::vector<string_view> lines = rows(section.lines);
+      const string_view value = trimmed(lines.empty() ? section.heading : lines.front());
+      if (!grains_.rows.empty()) refuse_form(section.heading);  // a second frame
+      if (name.starts_with("ATOMS")) {
+        grains_.header = section.heading;
+        grains_.columns = columns_of(name.substr(string_view("ATOMS").size()));
+        grains_.rows = lines;
+      } else if (name.starts_with("BOX BOUNDS")) {
+        read_dump_box(section.heading, lines);
       } else if (name == "UNITS") {
-        require_line("the rest of the dump");
-        take_unit("units", trimmed(line_));
+        take_unit(value);
       } else if (name == "NUMBER OF ATOMS") {
-        require_line("the rest of the dump");
-        count = read_number<std::uint64_t>(trimmed(line_));
-        stated_in = line_;
-      } else if (concerns_geometry(name)) {
-        refuse_part(name, "", "cannot be read in this form",
-                    "Use ITEM: BOX BOUNDS and ITEM: UNITS as LAMMPS writes them, or remove this "
-                    "section.");
+        count = value;
       } else if (!name.starts_with("TIME")) {
-        leave(name);
+        leave_or_refuse(name);
       }
     }
-    refuse_line(line_, "the dump ends before its atoms", "Use a complete dump.");
+    require_count(count);
   }
 
-  /// Reads the three lines of the box after the line with `item`.
-  void read_dump_box(string_view item) {
-    if (item.find("abc") != item.npos) {
-      refuse_part(item, "", kEdges, "Write the dump without `dump_modify triclinic/general yes`.");
-    }
-    const bool leans = item.find("xy") != item.npos;
-    const std::vector<string_view> words_of_item = split(item, ' ');
+  void read_dump_box(string_view item, const std::vector<string_view>& lines) {
+    const std::vector<string_view> words_of_item = split(item);
     const auto kinds = std::span(words_of_item).last(3);  // "ss ss pp"
     const bool ours = kinds[0] != "pp" && kinds[1] != "pp" && kinds[2] == "pp";
     if (kinds[2] != "BOUNDS" && !ours) leave(fmt::format("boundary {}", fmt::join(kinds, " ")));
-    for (const int k : {0, 1, 2}) {
-      require_line("the rest of the box");
-      const std::vector<string_view> words = split(line_, ' ');
-      if (words.size() != (leans ? 3U : 2U)) {
-        refuse_line(line_, "does not give a lower and an upper bound", "Use a complete dump.");
-      }
-      set_planes(k, words[0], words[1]);
-      box_->follows[k] = kinds[k].find_first_of("sm") != string_view::npos;
-      if (leans) set_lean(number(words[2], "tilt"));
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::vector<string_view> words = k < lines.size() ? split(lines[k]) : split("");
+      if (words.size() != 2 && words.size() != 3) refuse_form(item);
+      set_planes(static_cast<Eigen::Index>(k), words[0], words[1]);
+      if (words.size() == 3) set_lean(lines[k], number(words[2], "tilt"));
     }
   }
 
@@ -672,29 +609,20 @@ class PackingReader {
     return line.substr(std::min(line.find_first_not_of("# \t"), line.size()));
   }
 
-  static bool names_a_column(string_view line) {
-    const string_view header = header_of(line.substr(0, 2000));
-    return std::ranges::any_of(columns_of(header, separator_of(header)), [](const Column& column) {
-      return !meaning_of(column.name, true).names.empty();
-    });
-  }
-
   void read_csv() {
-    next_line();
-    const string_view header = header_of(line_);
-    grains_ = {.header = line_,
-               .remedy =
-                   "The first line must name the columns, such as x_m,y_m,z_m. The unit can "
-                   "be m, d, mm, cm or um.",
+    remedy_ = string(kFormats) +
+              " Velocities are vx_m_per_s and so on. The unit can be m, d, mm, cm or um.";
+    const string_view header = header_of(lines_.front());
+    grains_ = {.header = lines_.front(),
                .columns = columns_of(header, separator_of(header)),
-               .separator = separator_of(header)};
+               .separator = separator_of(header),
+               .rows = rows(std::span(lines_).subspan(1))};
     units_in_names_ = true;
-    read_rows();
   }
 
-  /// Reads the unit from the text in line_, such as "lengths in mm". Scaled coordinates are refused
-  /// like an unknown unit.
-  void take_text(const char* key) {
+  /// Reads the unit from a text such as "lengths in mm". Scaled coordinates are refused like an
+  /// unknown unit.
+  void take_units_of_text(string_view line) {
     static const std::regex unit(
         "\\b(?:(?:units?|coord\\w{0,9})\\b"
         "(?:[\\s=:\"'\\[(]|of|in|are|is|lengths?|distances?|positions?){1,12}|"
@@ -705,26 +633,21 @@ class PackingReader {
         "\\b(?:fractional|scaled|reduced)\\s{1,9}coord|"
         "\\b(?:(?:lattice|length|box|position)_?)?scale(?:_?factor)?=[0-9.]+(?![\\w.])",
         std::regex::icase);
-    const string text(line_.substr(0, 20'000));
+    const string text(line.substr(0, 20'000));
     for (std::sregex_iterator at(text.begin(), text.end(), unit), end; at != end; ++at) {
-      static const std::regex quantity("(veloc|diam|radi|mass|time|stress)\\w{0,9}\\s{0,9}$",
-                                       std::regex::icase);
-      const auto begin = static_cast<std::size_t>(at->position(0));
-      const std::size_t from = begin - std::min<std::size_t>(begin, 32);
-      if (std::regex_search(text.substr(from, begin - from), quantity)) continue;
       const std::size_t group = (*at)[1].matched ? 1 : 0;
-      take_unit(key, line_.substr(static_cast<std::size_t>(at->position(group)),
-                                  static_cast<std::size_t>(at->length(group))));
+      take_unit(line.substr(static_cast<std::size_t>(at->position(group)),
+                            static_cast<std::size_t>(at->length(group))));
     }
   }
 
-  /// Sets the unit of lengths from the value of a key. The value "lj" sets no unit.
-  void take_unit(const char* key, string_view text) {
+  /// Sets the unit of lengths to one that the file names. The value "lj" sets no unit.
+  void take_unit(string_view text) {
     const string name = lower(text);
     if (name == "lj") return;
     const std::optional<LengthUnit> unit = unit_of(name);
     if (!unit) {
-      refuse_part(text, key, "cannot be read",
+      refuse_part(text, "units", "cannot be read",
                   fmt::format("Lengths must be in one of {}, si, cgs, or lj (the unit that the "
                               "manifest states).",
                               fmt::join(kNames<LengthUnit>, ", ")));
@@ -739,33 +662,29 @@ class PackingReader {
   void set_unit(LengthUnit unit, string_view in) {
     const std::optional<LengthUnit> other = stated_unit();
     if (other && *other != unit) {
-      refuse_line(
-          in, fmt::format("gives lengths in {}", name_of(unit)),
-          unit_ ? fmt::format("The file also has lengths in {}. Write all lengths in one unit.",
-                              name_of(*other))
-                : fmt::format("The manifest sets `unit: {}`. Remove that key.", name_of(*other)));
+      refuse_line(in,
+                  fmt::format("gives lengths in {}, but {} has lengths in {}", name_of(unit),
+                              unit_ ? "another part of the file" : "the manifest", name_of(*other)),
+                  "Write all lengths in one unit, and state it in the file or as `unit` in the "
+                  "manifest.");
     }
     unit_ = unit;
   }
 
   void interpret_box() {
     if (!box_) return;
-    const auto missing = (box_->planes.max().array() < -kLargest).count();
-    if (missing == 3 && box_->lean == 0) return box_.reset();
-    if (missing > 0) {
-      refuse_line(box_->line, "the box is not complete", "Write xlo xhi, ylo yhi and zlo zhi.");
-    }
     const Eigen::Vector3d size = box_->planes.sizes();
-    if (box_->lean > 1e-9 * size.cwiseAbs().maxCoeff()) {
+    if ((size.array() <= 0).any()) {
+      refuse_line(box_->line,
+                  fmt::format("the box is not complete, or has an edge that is not positive: "
+                              "{:.6g} x {:.6g} x {:.6g}",
+                              size.x(), size.y(), size.z()),
+                  remedy_);
+    }
+    if (box_->lean > 1e-9 * size.maxCoeff()) {
       refuse_line(box_->line,
                   fmt::format("the box is not orthogonal: an edge leans by {:.3g}", box_->lean),
                   "Use a rectangular box. A sheared cell is rectangular at the end of a cycle.");
-    }
-    for (const int k : {0, 1, 2}) {
-      if (size[k] > 0) continue;
-      refuse_line(box_->line,
-                  fmt::format("the box has length {:.6g} along {}", size[k], kNamesInMessages[k]),
-                  "The edges must be positive.");
     }
   }
 
@@ -776,79 +695,66 @@ class PackingReader {
       refuse_line(table.header, fmt::format("has {} columns", table.columns.size()),
                   fmt::format("At most {} columns can be read. Leave out some columns.", most));
     }
+    struct Candidate {
+      Column column;
+      Meaning meaning;
+      std::size_t field;  ///< the first field of the column in a row
+    };
+    std::vector<Candidate> candidates;
+    std::size_t fields = 0;
+    for (const Column& column : table.columns) {
+      candidates.push_back({column, meaning_of(column, units_in_names_), fields});
+      fields += static_cast<std::size_t>(column.count);
+    }
+    std::ranges::stable_sort(candidates, {}, [](const auto& one) { return one.meaning.rank; });
     std::vector<Use> uses;
     std::optional<std::optional<LengthUnit>> unit;  // of the columns read so far
-    std::vector<bool> used(table.columns.size());
-    for (const auto rank : {Meaning::listed, Meaning::second_best, Meaning::probable}) {
-      const std::vector<Use> better = uses;
-      std::size_t field = 0;
-      for (std::size_t k = 0; k < used.size(); ++k) {
-        const Column& column = table.columns[k];
-        const auto at = std::exchange(field, field + static_cast<std::size_t>(column.count));
-        Meaning meaning = meaning_of(column.name, units_in_names_, column.count);
-        if (meaning.count > 1 && column.count_text.empty()) meaning.rank = Meaning::probable;
-        if (meaning.first == kQuantities || meaning.rank != rank) continue;
-        if (holds(better, meaning.first)) continue;
-        used[k] = true;
-        use(meaning, column, at, uses);
-        if (meaning.first > kDiameter) continue;  // not a length
-        if (!meaning.unit) meaning.unit = stated_unit();
-        if (unit && meaning.unit != *unit) {
-          refuse_part(column.name, "", "is in another unit than the earlier columns",
-                      "Write all lengths in m (x_m) or all in d (x_d).");
-        }
-        unit = meaning.unit;
+    for (auto& [column, meaning, field] : candidates) {
+      const auto other = std::ranges::find(uses, meaning.first, &Use::quantity);
+      if (meaning.first == kQuantities || (other != uses.end() && other->rank < meaning.rank)) {
+        if (lower(column.name) == "unit" || lower(column.name) == "units") refuse_form(column.name);
+        leave(column.name.empty() ? fmt::format("column {}", field + 1) : string(column.name));
+        continue;
       }
+      if (meaning.rank == Meaning::probable && meaning.first != kDiameter) {
+        refuse_part(column.name, "", "cannot be read under this name",
+                    remedy_ + " Or remove this column.");
+      }
+      if (meaning.count != column.count) {
+        refuse_part(column.name, "", fmt::format("has {} values in each row", column.count),
+                    fmt::format("It must have {}.", meaning.count));
+      }
+      for (int k = 0; k < meaning.count; ++k) {
+        if (meaning.first != kDiameter && holds(uses, meaning.first + k)) {
+          refuse_part(column.name, "", "is a column that occurs twice", "Keep one of them.");
+        }
+        uses.push_back({meaning.first + k, field + static_cast<std::size_t>(k), column.name,
+                        meaning.factor, meaning.rank});
+      }
+      if (meaning.first > kDiameter) continue;  // not a length
+      if (!meaning.unit) meaning.unit = stated_unit();
+      if (unit && meaning.unit != *unit) {
+        refuse_part(column.name, "", "is in another unit than the earlier columns",
+                    "Write all lengths in m (x_m) or all in d (x_d).");
+      }
+      unit = meaning.unit;
     }
     if (unit && *unit) set_unit(**unit, table.header);
-    for (std::size_t k = 0; k < used.size(); ++k) {
-      const string_view name = table.columns[k].name;
-      if (!used[k] && (lower(name) == "unit" || lower(name) == "units")) {
-        refuse_part(name, "", "is a unit that cannot be read", grains_.remedy);
-      }
-      if (!used[k]) leave(name.empty() ? fmt::format("column {}", k + 1) : string(name));
-    }
     return uses;
-  }
-
-  void use(const Meaning& meaning, const Column& column, std::size_t at, std::vector<Use>& uses) {
-    if (meaning.rank == Meaning::probable && meaning.first != kDiameter) {
-      refuse_part(
-          column.name, "", "cannot be read under this name",
-          meaning.first == kX
-              ? grains_.remedy
-              : "Name the columns x, y, z, vx, vy, vz (in extended XYZ pos:R:3 and vel:R:3), or "
-                "remove this column. Velocities must be in units of length per second. In CSV, "
-                "the names can give this unit: vx_m_per_s or vx_d_per_s.");
-    }
-    if (meaning.count != column.count) {
-      refuse_part(
-          column.count_text, "Properties",
-          fmt::format("is not the right number of columns for {}", printable(lower(column.name))),
-          fmt::format("Write {}.", meaning.count));
-    }
-    for (int k = 0; k < meaning.count; ++k) {
-      if (meaning.first != kDiameter && holds(uses, meaning.first + k)) {
-        refuse_part(column.name, "", "is a column that occurs twice", "Keep one of them.");
-      }
-      uses.push_back({meaning.first + k, at + static_cast<std::size_t>(k), meaning.factor});
-    }
-    if (meaning.rank != Meaning::probable) return;
-    about_diameter_ =
-        fmt::format(" The column {} is read as {}. If this is wrong, rename or remove the column.",
-                    printable(column.name), meaning.factor > 1 ? "radii" : "diameters");
   }
 
   void require_columns() const {
     const bool moves = holds(uses_, kVx) || holds(uses_, kVy) || holds(uses_, kVz);
     for (const int q : {kX, kY, kZ, kVx, kVy, kVz}) {
       if (holds(uses_, q) || (q >= kVx && !moves)) continue;
-      refuse_line(grains_.header, fmt::format("the column {} is missing", kNamesInMessages[q]),
-                  grains_.remedy);
+      refuse_line(grains_.header, fmt::format("the column {} is missing", kColumns[q]), remedy_);
     }
   }
 
-  /// Reads the rows of a table; wall grains are counted, not returned.
+  /// The diameter of the run's grains in the unit of the file.
+  double diameter() const { return facts_.diameter_m / metres(unit_.value(), facts_.diameter_m); }
+
+  /// Reads the rows of a table, sorted by id. Each diameter must be that of the run.
   std::vector<GrainRow> rows_of(const GrainTable& table, const std::vector<Use>& uses) {
     std::size_t columns = 0;
     for (const Column& column : table.columns) columns += static_cast<std::size_t>(column.count);
@@ -858,112 +764,56 @@ class PackingReader {
       const bool more = fields.size() > columns;
       if (fields.size() < columns || (more && table.more == nullptr)) {
         refuse_line(line, fmt::format("has {} fields instead of {}", fields.size(), columns),
-                    table.separator == ',' && more
-                        ? "Write numbers with a decimal point, not a comma."
-                        : "Each grain is one line with a value for each column.");
+                    "Each grain is one line with a value for each column. Write numbers with a "
+                    "decimal point, not a comma.");
       }
       if (more) leave(table.more);
-      GrainRow row{.line = line};
+      GrainRow& row = rows.emplace_back(line);
       for (const Use& use : uses) {
         const auto q = static_cast<std::size_t>(use.quantity);
-        const double value = use.factor * number(unquoted(fields[use.field]), kNamesInMessages[q]);
-        const double other = std::exchange(row.value[q], value);
-        if (other == 0 || std::fabs(value - other) <= kTolerance * std::fabs(other)) continue;
-        refuse_line(
-            line, fmt::format("gives two diameters, {:.6g} and {:.6g}", other, value),
-            "The grains must be spheres. Keep one column of radii or diameters." + about_diameter_);
+        const string_view field = unquoted(fields[use.field]);
+        row.value[q] = use.factor * number(field, use.column);
+        if (use.quantity != kDiameter) continue;
+        if (std::fabs(row.value[q] - diameter()) <= kTolerance * diameter()) continue;
+        refuse_part(field, use.column,
+                    fmt::format("is not the {} of the manifest's grains, {:.6g} {}",
+                                use.factor > 1 ? "radius" : "diameter", diameter() / use.factor,
+                                name_of(unit_.value())),
+                    "This program needs equal grains. Is the unit right? If so, set `diameter_m`, "
+                    "scale the file, or remove the column if it is something else. Continue a "
+                    "packing of unequal grains in LAMMPS (`shearcell export --to lammps`).");
       }
-      if (holds(uses, kWall) && row.value[kWall] >= table.first_wall) {
-        ++wall_grains_;
-      } else {
-        rows.push_back(row);
-      }
     }
-    return rows;
-  }
-
-  /// Sets the velocity of each grain to the velocity with the same id in the table of velocities.
-  void join_velocities() {
-    std::map<double, GrainRow*> waiting;
-    for (GrainRow& grain : rows_) waiting[grain.value[kId]] = &grain;
-    for (const GrainRow& row : rows_of(moving_, interpret(moving_))) {
-      const auto found = waiting.extract(row.value[kId]);
-      if (!found && wall_grains_ > 0) continue;  // a velocity of a wall grain
-      if (!found) {
-        refuse_line(row.line,
-                    fmt::format("atom {:.0f} has two velocities, or no position", row.value[kId]),
-                    "Use a complete file.");
-      }
-      std::copy_n(&row.value[kVx], 3, &found.mapped()->value[kVx]);
-    }
-    if (waiting.empty()) return;
-    refuse_line(moving_.rows.back(),
-                fmt::format("atom {:.0f} has no velocity", waiting.begin()->first),
-                "Write one velocity for each atom, or leave out the section Velocities.");
-  }
-
-  void require_equal_diameters() const {
-    if (!holds(uses_, kDiameter)) return;
-    const auto diameter = [](const GrainRow& row) { return row.value[kDiameter]; };
-    const auto [least, most] = std::ranges::minmax_element(rows_, {}, diameter);
-    const double small = diameter(*least), large = diameter(*most);
-    if (small <= 0) {
-      refuse_line(least->line, fmt::format("the diameter is {:.6g}", small),
-                  "It must be positive." + about_diameter_);
-    }
-    if (large <= small * (1 + kTolerance)) return;
-    refuse_line(
-        most->line,
-        fmt::format(
-            "the grains have diameters from {:.6g} (line {}) to {:.6g}, which is {:.2g} % larger",
-            small, line_of(*least), large, 100 * (large / small - 1)),
-        "This program needs equal grains. Continue this packing in LAMMPS (`shearcell export --to "
-        "lammps` writes a script for LAMMPS)." +
-            about_diameter_);
-  }
-
-  /// The factor that converts lengths of the file to grain diameters.
-  double scale() {
-    unit_ = stated_unit();
-    if (!unit_) {
-      refuse_file("does not give the unit of its lengths",
-                  "Write `unit: m` or `unit: d` (grain diameters) beside `file` in the manifest.");
-    }
-    const double diameter = facts_.diameter_m, expected = diameter / metres(*unit_, diameter);
-    const double given = rows_.front().value[kDiameter];
-    const auto fits = [&](LengthUnit unit) {
-      return std::fabs(given * metres(unit, diameter) - diameter) <= kTolerance * diameter;
-    };
-    if (fits(*unit_) || !holds(uses_, kDiameter)) return 1 / expected;
-    const auto* other = std::ranges::find_if(kUnits, fits);
-    const string remedy =
-        other != std::end(kUnits)
-            ? fmt::format("The number would fit the unit {}. Is the unit right?", name_of(*other))
-        : unit_ == LengthUnit::d
-            ? "Lengths in d are divided by the diameter, so the diameter must be 1."
-            : fmt::format("The manifest has {:.6g} {}. Set `diameter_m`, or scale the file.",
-                          expected, name_of(*unit_));
-    refuse_line(rows_.front().line,
-                fmt::format("the diameter is {:.6g} {}", given, name_of(*unit_)),
-                remedy + about_diameter_);
-  }
-
-  void sort_by_id() {
-    if (!holds(uses_, kId)) return;
-    std::ranges::stable_sort(rows_, {}, [](const GrainRow& row) { return row.value[kId]; });
-    const auto same =
-        std::ranges::adjacent_find(rows_, {}, [](const GrainRow& row) { return row.value[kId]; });
-    if (same == rows_.end()) return;
+    if (!holds(uses, kId)) return rows;
+    const auto id = [](const GrainRow& row) { return row.value[kId]; };
+    std::ranges::stable_sort(rows, {}, id);
+    const auto same = std::ranges::adjacent_find(rows, {}, id);
+    if (same == rows.end()) return rows;
     refuse_line(std::next(same)->line,
-                fmt::format("the id {:.17g} is also in line {}", same->value[kId], line_of(*same)),
+                fmt::format("the id {:.17g} is also in line {}", id(*same), line_of(*same)),
                 "Give each grain a different id.");
   }
 
-  Eigen::Matrix3Xd columns(Quantity first, double scale) const {
+  /// Sets the velocity of each atom to the velocity with the same id in the table of velocities.
+  void join_velocities() {
+    const std::vector<GrainRow> moving = rows_of(moving_, interpret(moving_));
+    const auto id = [](const GrainRow& row) { return row.value[kId]; };
+    const auto [atom, other] = std::ranges::mismatch(rows_, moving, {}, id, id);
+    if (atom != rows_.end() || other != moving.end()) {
+      refuse_line(other == moving.end() ? atom->line : other->line,
+                  "the sections Atoms and Velocities do not have the same ids",
+                  "Write one velocity for each atom, or leave out the section Velocities.");
+    }
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      std::copy_n(&moving[i].value[kVx], 3, &rows_[i].value[kVx]);
+    }
+  }
+
+  Eigen::Matrix3Xd columns(Quantity first) const {
     Eigen::Matrix3Xd all(3, static_cast<Eigen::Index>(rows_.size()));
     for (std::size_t i = 0; i < rows_.size(); ++i) {
       const Eigen::Map<const Eigen::Vector3d> row(&rows_[i].value[first]);
-      all.col(static_cast<Eigen::Index>(i)) = row * scale;
+      all.col(static_cast<Eigen::Index>(i)) = row * (1 / diameter());
     }
     return all;
   }
@@ -973,41 +823,44 @@ class PackingReader {
     std::vector<string> aside = std::exchange(not_read_, {});  // to be listed after unread columns
     uses_ = interpret(grains_);
     require_columns();
+    unit_ = stated_unit();
+    if (!unit_) {
+      refuse_file("does not give the unit of its lengths",
+                  "Write `unit: m` or `unit: d` (grain diameters) beside `file` in the manifest.");
+    }
     rows_ = rows_of(grains_, uses_);
-    if (rows_.empty()) refuse_line(line_, "the file has no grains", kFormats);
+    if (!moving_.rows.empty()) join_velocities();
+    const std::size_t wall_grains = std::erase_if(
+        rows_, [&](const GrainRow& row) { return row.value[kWall] >= grains_.first_wall; });
+    if (rows_.empty()) refuse_line(grains_.header, "the file has no grains", kFormats);
     if (facts_.grains > 0 && rows_.size() != facts_.grains) {
       refuse_file(fmt::format("has {}, but the manifest asks for {}",
                               counted(rows_.size(), "grain"), facts_.grains),
                   fmt::format("Write `grains: {}`.", rows_.size()));
     }
-    if (!moving_.rows.empty()) join_velocities();
     for (const string& name : aside) leave(name);
-    if (wall_grains_ > 0) leave(counted(wall_grains_, "wall grain"));
-    require_equal_diameters();
-    sort_by_id();
-    const double scale_to_d = scale();
+    if (wall_grains > 0) leave(counted(wall_grains, "wall grain"));
     PackingFile packing;
-    packing.position = columns(kX, scale_to_d);
+    packing.position = columns(kX);
     packing.unit = *unit_;
     packing.not_read = not_read_;
-    if (holds(uses_, kVx) || !moving_.rows.empty()) packing.velocity = columns(kVx, scale_to_d);
-    const Eigen::Vector3d least = packing.position.rowwise().minCoeff();
-    const Eigen::Vector3d most = packing.position.rowwise().maxCoeff();
-    Eigen::AlignedBox3d space(least.array() - 1, most.array() + 1);
+    if (holds(uses_, kVx) || !moving_.rows.empty()) packing.velocity = columns(kVx);
+    const Eigen::AlignedBox3d extent(packing.position.rowwise().minCoeff().array() - 1,
+                                     packing.position.rowwise().maxCoeff().array() + 1);
+    Eigen::AlignedBox3d space = extent;
     if (box_) {
-      space = {box_->planes.min() * scale_to_d, box_->planes.max() * scale_to_d};
-      for (const int k : {0, 1}) {
-        if (!box_->follows[static_cast<std::size_t>(k)]) continue;
-        space.min()[k] = least[k];
-        space.max()[k] = most[k];
-      }
+      const double scale = 1 / diameter();
+      space = {box_->planes.min() * scale, box_->planes.max() * scale};
       packing.box = space;
     }
-    const double longest = space.sizes().maxCoeff();
-    if (longest > kLongestCell) {
+    const Eigen::Vector3d size = space.merged(extent).sizes();
+    if (size.maxCoeff() > kLongestCell || (box_ && space.sizes().z() < kShallowestCell)) {
       refuse_file(
-          fmt::format("the packing is {:.3g} d long", longest),
-          fmt::format("At most {:g} d are allowed. Is the unit of lengths right?", kLongestCell));
+          fmt::format("box and grains are {:.3g} x {:.3g} x {:.3g} d large", size.x(), size.y(),
+                      size.z()),
+          fmt::format("At most {:g} d are allowed, and at least {:g} d along z. Is the unit "
+                      "of lengths right?",
+                      kLongestCell, kShallowestCell));
     }
     if (box_) require_inside(space, packing.position);
     packing.largest_overlap = check_overlaps(space, packing.position);
@@ -1017,21 +870,16 @@ class PackingReader {
   /// Reports a grain outside of the box in x or y as an error. Wraps z into the periodic box.
   void require_inside(const Eigen::AlignedBox3d& box, Eigen::Matrix3Xd& position) const {
     const double depth = box.sizes().z();
-    if (depth < kShallowestCell) {
-      refuse_line(box_->line, fmt::format("the box is {:.3g} d deep in z", depth),
-                  fmt::format("At least {:g} d are needed. Is the unit of lengths right?",
-                              kShallowestCell));
-    }
     for (Eigen::Index i = 0; i < position.cols(); ++i) {
       const auto& row = rows_[static_cast<std::size_t>(i)];
-      for (const int k : {0, 1, 2}) {
-        const double at = position(k, i), further = k == 2 ? kLongestCell : 0;
-        if (at >= box.min()[k] - further && at <= box.max()[k] + further) continue;
+      for (const int k : {0, 1}) {
+        const double at = position(k, i);
+        if (at >= box.min()[k] && at <= box.max()[k]) continue;
         refuse_line(
             row.line,
             fmt::format(
                 "the grain is outside of the box: {} = {:.6g} d is not between {:.6g} and {:.6g} d",
-                kNamesInMessages[k], at, box.min()[k], box.max()[k]),
+                kColumns[k], at, box.min()[k], box.max()[k]),
             "Only z is periodic; x and y have walls. Write a box that contains all grains. In "
             "extended XYZ, Origin is the lower corner of the box (default 0 0 0).");
       }
@@ -1049,37 +897,25 @@ class PackingReader {
     Cell cell;
     cell.width = size.x();
     cell.top = size.y();
-    const bool fits = facts_.depth >= std::max(kShallowestCell, (1 - kTolerance) * (size.z() - 2));
-    // No images touch at the last of these depths.
-    cell.depth = box_ ? size.z() : fits ? facts_.depth : size.z() + kShallowestCell;
+    cell.depth = size.z() + (box_ ? 0 : kShallowestCell);  // without a box, no images touch
     const Eigen::Matrix3Xd sites = position.colwise() - space.min();
     double largest = 0;
-    for_each_pair(
-        cell, wall_pose(cell, 0, 0), sites, 1,
-        [&](std::int32_t i, std::int32_t j, const Eigen::Vector3d& r) {
-          const double overlap = 1 - r.norm();
-          const Eigen::Vector3d inside = sites.col(i) - sites.col(j);
-          const bool image = !box_ && std::fabs(inside.z()) > 0.5 * cell.depth;
-          if (!image) largest = std::max(largest, overlap);
-          if (overlap <= facts_.largest_overlap) return;
-          const GrainRow* first = &rows_[static_cast<std::size_t>(i)];
-          const GrainRow* second = &rows_[static_cast<std::size_t>(j)];
-          if (first->line.data() > second->line.data()) std::swap(first, second);
-          const string other = fmt::format("{}the grain in line {}",
-                                           image ? "a periodic image of " : "", line_of(*first));
-          refuse_line(
-              second->line,
-              overlap == 1 ? fmt::format("the grain has the same position as {}", other)
-                           : fmt::format("the grain overlaps {} by {:.3g} d", other, overlap),
-              image ? fmt::format("The cell of the manifest is only {:.6g} d deep (z). ",
-                                  cell.depth) +
-                          facts_.remedy_for_width(std::fabs(inside.z()) +
-                                                  std::sqrt(1 - inside.head<2>().squaredNorm()))
-                    : fmt::format("At most {:g} d are allowed (`max_overlap_diameters`). Are the "
-                                  "unit of the lengths and the diameter right? If so, let the "
-                                  "grains relax in the program that made the file.",
-                                  facts_.largest_overlap));
-        });
+    for_each_pair(cell, wall_pose(cell, 0, 0), sites, 1,
+                  [&](std::int32_t i, std::int32_t j, const Eigen::Vector3d& r) {
+                    largest = std::max(largest, 1 - r.norm());
+                    if (largest <= facts_.largest_overlap) return;
+                    const GrainRow* first = &rows_[static_cast<std::size_t>(i)];
+                    const GrainRow* second = &rows_[static_cast<std::size_t>(j)];
+                    if (first->line.data() > second->line.data()) std::swap(first, second);
+                    refuse_line(
+                        second->line,
+                        fmt::format("the grain overlaps the grain in line {} by {:.3g} d",
+                                    line_of(*first), largest),
+                        fmt::format("At most {:g} d are allowed (`max_overlap_diameters`). Are the "
+                                    "unit of the lengths and the diameter right? If so, let the "
+                                    "grains relax in the program that made the file.",
+                                    facts_.largest_overlap));
+                  });
     return largest;
   }
 
@@ -1088,10 +924,10 @@ class PackingReader {
 
   string_view text_;
   string_view file_;
-  PackingFacts facts_;
-  string_view rest_;  ///< the text after line_
-  string_view line_;
+  const PackingFacts& facts_;
+  std::vector<string_view> lines_;
 
+  string remedy_;  ///< how to write what is missing or cannot be read in this format
   std::optional<Box> box_;
   GrainTable grains_, moving_;
   bool units_in_names_ = false;  ///< whether names of columns contain units
@@ -1099,26 +935,14 @@ class PackingReader {
 
   std::optional<LengthUnit> unit_;
   std::vector<Use> uses_;
-  string about_diameter_;  ///< appended to remedies for wrong diameters
   std::vector<GrainRow> rows_;
-  std::size_t wall_grains_ = 0;
 };
 
 }  // namespace
 
 double metres(LengthUnit unit, double diameter_m) {
-  static constexpr std::array<double, std::size(kUnits)> length = {1, 0, 1e-3, 1e-2, 1e-6};
+  static constexpr double length[] = {1, 0, 1e-3, 1e-2, 1e-6};  // in the order of LengthUnit
   return unit == LengthUnit::d ? diameter_m : length[static_cast<std::size_t>(unit)];
-}
-
-std::optional<LengthUnit> likelier_unit(LengthUnit unit, double diameter_m, double length,
-                                        double expected) {
-  const auto off = [&](LengthUnit other) {
-    const double factor = metres(other, diameter_m) / metres(unit, diameter_m);
-    return std::fabs(std::log(length * factor / expected));
-  };
-  const LengthUnit best = std::ranges::min(kUnits, {}, off);
-  return off(best) < 0.5 * off(unit) ? std::optional(best) : std::nullopt;
 }
 
 PackingFile read_packing(string_view text, string_view file, const PackingFacts& facts) {

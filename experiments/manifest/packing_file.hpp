@@ -7,7 +7,6 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -24,11 +23,6 @@ inline constexpr auto kNames<LengthUnit> = names_in_order<LengthUnit>("m", "d", 
 
 /// Length of one unit [m]. `diameter_m`: diameter of the grains.
 double metres(LengthUnit unit, double diameter_m);
-
-/// The unit that `length` [d] probably has, if it was read in `unit` but should be about `expected`
-/// [d]; nothing if no other unit is clearly closer.
-std::optional<LengthUnit> likelier_unit(LengthUnit unit, double diameter_m, double length,
-                                        double expected);
 
 /// The grains of a file, sorted by id, or in the order of the file if it has no ids. Wall grains in
 /// an export of this program are left out.
@@ -47,9 +41,6 @@ struct PackingFacts {
   double diameter_m = 0;                ///< of the run's grains
   double largest_overlap = 0;           ///< largest allowed overlap of two grains [d], below 1
   std::uint64_t grains = 0;             ///< of the run; 0: not known
-  double depth = 0;                     ///< of the run's cell [d]; 0: not known
-  /// Returns the remedy for a cell that should have this width and depth [d].
-  std::function<std::string(double width)> remedy_for_width = {};
 };
 
 /// Largest allowed size of a file [bytes].
@@ -58,8 +49,7 @@ inline constexpr std::size_t kLargestPackingFile = std::size_t{32} << 20;
 /// Detects the format of the text and reads it. `file`: the name for messages. Positions are kept,
 /// except that z is wrapped into the box. Throws ManifestError, with line, value and remedy, if the
 /// text is not a packing of facts.grains equal grains inside its box, or if two grains overlap by
-/// more than facts.largest_overlap. Overlaps across the periodic boundary of the box are included;
-/// without a box, those across the boundary of a cell of facts.depth.
+/// more than facts.largest_overlap, also across the periodic boundary of the box.
 PackingFile read_packing(std::string_view text, std::string_view file, const PackingFacts& facts);
 
 /// For example "150 grains, box 6 x 7.2 x 6 d, no velocities; not read: element".

@@ -97,24 +97,14 @@ State state_in(const Cell& cell, const PackingFile& grains, const std::string& p
     const double over = size[axis] - room - beyond;
     const bool fits = grains.box ? std::fabs(over) <= tolerance * room : over <= tolerance * room;
     if (fits) continue;
-    const double outer = grains.box ? 0 : 1;  // the radii of the outermost grains [d]
-    const double extent = size[axis] - outer;
-    const auto unit = likelier_unit(grains.unit, p.diameter_m, extent, room - outer);
-    const string width = remedy_for_width(p, size[axis]);
     refuse(path, {}, "",
            fmt::format("the {} are {:.9g} d {}, but the cell of the manifest is {:.9g} d",
                        grains.box ? "box and grains" : "grains", size[axis],
                        axis == 0 ? "wide (x)" : "deep (z)", room),
            "",
-           unit ? fmt::format("Is the unit of the lengths right? With lengths in {0}, the size "
-                              "would be {1:.4g} d. If {0} is the unit, write it in the file "
-                              "(columns x_{0}, y_{0}, z_{0}; or length_unit={0}) or in the "
-                              "manifest (`unit: {0}`).{2}",
-                              name_of(*unit),
-                              outer + extent * metres(*unit, p.diameter_m) /
-                                          metres(grains.unit, p.diameter_m),
-                              size[axis] < 10 * room ? " If the unit is right: " + width : "")
-                : width);
+           fmt::format("Are the lengths in {}? If not, write the unit in the file (columns x_mm, "
+                       "y_mm, z_mm; or length_unit=mm) or in the manifest (`unit: mm`). If so: {}",
+                       name_of(grains.unit), remedy_for_width(p, size[axis])));
   }
   const bool from_below = cell.moving == MovingWall::top;  // the bottom plane is fixed
   const Eigen::Vector3d shift = {grains.box ? -low.x() : 0.5 * (cell.width - low.x() - high.x()),
@@ -167,35 +157,27 @@ const Stage& recorded_run(const Manifest& manifest, const Scale& scale, const Va
                         variant.parameters.start_seed,
                         start.variant.empty() ? "" : " and " + words_of(start.variant))
           : fmt::format("shear whose id begins with {}", start.run);
-  if (found.empty()) {
-    refuse(manifest.file, start.at, "start", fmt::format("the store has no {}", what), "",
-           "Compute this run first, or use --store to open the store that contains it.");
-  }
-  if (found.size() > 1) {
+  if (found.size() != 1) {
     refuse(
-        manifest.file, start.at, "start", fmt::format("the store has more than one {}", what), "",
-        start.run.empty() ? "Select one: `variant: \"KEY=VALUE\"`. Join several values by commas."
-                          : "Give more digits of the id.");
+        manifest.file, start.at, "start",
+        fmt::format("the store has {} {}", found.empty() ? "no" : "more than one", what), "",
+        found.empty() ? "Compute this run first, or use --store to open the store that contains it."
+        : start.run.empty() ? "Select one: `variant: \"KEY=VALUE\"`. Join several values by commas."
+                            : "Give more digits of the id.");
   }
   const double cycle = static_cast<double>(variant.parameters.start_cycle);
-  if (found.front()->cycle < cycle) {
-    refuse(manifest.file, start.at, "start",
-           fmt::format("run {:.8} has no cycle {} yet", found.front()->id, cycle),
-           fmt::format("cycle {}", found.front()->cycle), "Extend the run first.");
-  }
-  const auto records_it = [&](const Ask& ask) {
-    return std::fmod(cycle, static_cast<double>(ask.checkpoint_every)) == 0 ||
-           cycle == static_cast<double>(ask.target_cycles);
-  };
+  const double newest = found.front()->cycle;
   const std::vector<Ask> asks = asks_of(found.front()->memberships);
-  if (found.front()->cycle > cycle && !asks.empty() && std::ranges::none_of(asks, records_it)) {
+  const bool recorded = asks.empty() || std::ranges::any_of(asks, [&](const Ask& ask) {
+                          return std::fmod(cycle, static_cast<double>(ask.checkpoint_every)) == 0 ||
+                                 cycle == static_cast<double>(ask.target_cycles);
+                        });
+  if (newest < cycle || (newest > cycle && !recorded)) {
     refuse(manifest.file, start.at, "start",
            fmt::format("run {:.8} has no checkpoint at cycle {}", found.front()->id, cycle), "",
-           fmt::format("It has checkpoints every {} and at cycle {}. Name one of these "
-                       "cycles, or run its manifest again with `checkpoints: {{every_cycles: 1}}`.",
-                       counted(std::ranges::min(asks, {}, &Ask::checkpoint_every).checkpoint_every,
-                               "cycle"),
-                       found.front()->cycle));
+           fmt::format("The newest is at cycle {}. Extend the run, name another cycle, or run its "
+                       "manifest again with `checkpoints: {{every_cycles: 1}}`.",
+                       newest));
   }
   require_same_cell(manifest, scale, variant, *found.front());
   return *found.front();
@@ -217,14 +199,11 @@ PlacedGrains placed(const PackingText& packing, const Parameters& p, std::uint64
   // max_overlap_diameters, and settling allows more while it presses the grains together.
   double limit = p.max_overlap_diameters;
   if (packing.file.settles) limit = std::max(limit, 0.9 * kLargestOverlapLimit);
-  const PackingFile grains =
-      read_packing(packing.text, packing.path,
-                   {.unit = packing.file.unit,
-                    .diameter_m = p.diameter_m,
-                    .largest_overlap = limit,
-                    .grains = p.grains,
-                    .depth = cell_width(geometry(p)),
-                    .remedy_for_width = [&](double width) { return remedy_for_width(p, width); }});
+  const PackingFile grains = read_packing(packing.text, packing.path,
+                                          {.unit = packing.file.unit,
+                                           .diameter_m = p.diameter_m,
+                                           .largest_overlap = limit,
+                                           .grains = p.grains});
   PlacedGrains made{make_cell(geometry(p), seed, poll), {}, describe(grains)};
   made.state = state_in(made.cell, grains, packing.path, p);
   const Eigen::RowVectorXd x = made.state.position.row(0);
@@ -235,18 +214,26 @@ PlacedGrains placed(const PackingText& packing, const Parameters& p, std::uint64
         "has room for more grains. {}",
         packing.path, width, made.cell.width, remedy_for_width(p, width));
   }
-  double deepest = 0;
+  Contact deepest{};
   const WallPose pose = wall_pose(made.cell, 0, made.state.wall_height);
   for_each_contact(made.cell, made.state.position, pose, [&](const Contact& contact) {
-    if (contact.kind != Contact::Kind::grain) deepest = std::max(deepest, contact.overlap);
+    if (contact.overlap > deepest.overlap) deepest = contact;
   });
-  if (deepest > limit) {
-    refuse(packing.path, {}, "",
-           fmt::format("a grain overlaps a wall by {:.3g} d, more than {:g} d", deepest, limit), "",
-           fmt::format(
-               "Rough walls have wall grains, whose positions depend on the seed. Use the seed of "
-               "the packing, leave room for wall grains, or set `walls: smooth`{}.",
-               packing.file.settles ? "" : " or, to let the grains settle first, `settle: {}`"));
+  if (deepest.overlap > limit) {
+    const bool image = deepest.kind == Contact::Kind::grain;
+    const Eigen::RowVectorXd z = made.state.position.row(2);
+    refuse(
+        packing.path, {}, "",
+        fmt::format("a grain overlaps {} by {:.3g} d, more than {:g} d",
+                    image ? "a periodic image of another grain" : "a wall", deepest.overlap, limit),
+        "",
+        image
+            ? fmt::format("The cell of the manifest is {:.6g} d deep (z). {}", made.cell.depth,
+                          remedy_for_width(p, z.maxCoeff() - z.minCoeff() + 1))
+            : fmt::format(
+                  "Rough walls have wall grains, whose positions depend on the seed. Use the "
+                  "seed of the packing, leave room for wall grains, or set `walls: smooth`{}.",
+                  packing.file.settles ? "" : " or, to let the grains settle first, `settle: {}`"));
   }
   return made;
 }

@@ -54,7 +54,10 @@ TEST(Paths, ThatSlurmWouldMisreadAreRejected) {
   for (const char* text : {"/a\nb", "/a\\b", "/a\tb", "/a\x7f", "/\x1b[31m"}) {
     EXPECT_NE(unfit_path(text), "") << text;
   }
-  EXPECT_EQ(output_pattern("/100%j/%", "task-%a.log"), "/100%%j/%%/task-%a.log");
+  const Job job = array_job({"0123456789ab", {{}}, "", "", {}}, "/100%j/%", {});
+  EXPECT_EQ(
+      std::ranges::count(job.command, "--output=/100%%j/%%/submissions/0123456789ab/task-%a.log"),
+      1);
 }
 
 TEST(Values, CannotEndADirective) {

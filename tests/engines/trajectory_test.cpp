@@ -104,26 +104,5 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"TwoProcesses", [](Parameters& p) { p.fluid = Fluid::cell; }, 2}),
     [](const auto& scene) { return std::string(scene.param.name); });
 
-TEST(LammpsDrag, ExplicitDragHasAnErrorOfOrderDt) {
-  if (!find_program("lmp")) GTEST_SKIP() << "needs LAMMPS (Debian package lammps)";
-  LammpsTask task = task_of({"", [](Parameters&) {}});
-  task.added_mass = false;
-  const auto apart = [&](std::uint64_t finer) {
-    LammpsTask fine = task;
-    fine.scene.time_step /= static_cast<double>(finer);
-    fine.drive.steps_per_cycle *= finer;
-    fine.state.step *= finer;
-    fine.end = fine.state.step + 50 * finer;
-    const State theirs = run_lammps(find_lammps(), fine, 1).state;
-    Simulation simulation(fine.cell, fine.scene, fine.state);
-    simulation.advance(fine.drive, 50 * finer);
-    return (simulation.state().position - theirs.position).colwise().norm().maxCoeff();
-  };
-  const double coarse = apart(1), fine = apart(4);
-  std::printf("apart %.2g d at dt, %.2g d at dt/4\n", coarse, fine);
-  EXPECT_GT(coarse, 1e-7) << "without the added mass the difference is not rounding";
-  EXPECT_NEAR(std::log2(coarse / fine) / 2, 1, 0.25);
-}
-
 }  // namespace
 }  // namespace shearcell::test

@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <numbers>
@@ -14,6 +15,7 @@
 #include "core/drive.hpp"
 #include "provenance/io/child_process.hpp"
 #include "provenance/io/file.hpp"
+#include "provenance/io/read_number.hpp"
 
 namespace shearcell {
 namespace {
@@ -74,9 +76,7 @@ class Deck {
   }
 
   // The fraction b dt/2m by which a grain's mass is increased, so that its drag b is implicit.
-  double added(double drag) const {
-    return task_.added_mass && !for_users_ ? 0.5 * drag * scene_.time_step : 0;
-  }
+  double added(double drag) const { return for_users_ ? 0 : 0.5 * drag * scene_.time_step; }
 
   void atoms(std::string_view units, std::string_view data) {
     add(text_, "units {}\natom_style sphere\natom_modify map array\nboundary s s p", units);
@@ -100,7 +100,6 @@ class Deck {
     add(text_, "group bottom type {}\ngroup top type {}", +kBottom, +kTop);
     add(text_, "set group wall y {:.17g} diameter {:.17g}", task_.state.wall_height * d_, d_);
     add(text_, "velocity wall set 0 {:.17g} 0 units box", task_.state.wall_velocity * d_);
-    const double drag = task_.added_mass ? area_ * scene_.wall_drag * m_ : 0;
     add(text_,
         R"(# A mass raised by drag*dt/2 makes LAMMPS's explicit drag equal to implicit drag.
 set group wall mass $({:.17g}+{:.17g}*dt/2:%.17g)
@@ -110,7 +109,8 @@ set group planted mass {:.17g}
 
 # Change diameters and masses of grains here, for example:
 # set atom 1*50 diameter {:.3g} density {:.6g})",
-        area_ * scene_.wall_mass * m_, drag, (1 + added(scene_.drag_rate)) * m_, 1e6 * m_, 0.8 * d_,
+        area_ * scene_.wall_mass * m_, area_ * scene_.wall_drag * m_,
+        (1 + added(scene_.drag_rate)) * m_, 1e6 * m_, 0.8 * d_,
         m_ / (std::numbers::pi / 6 * d_ * d_ * d_));
   }
 
@@ -403,18 +403,13 @@ State read_lammps_frame(const std::filesystem::path& file, std::size_t grains) {
   const auto require = [&](bool sound) {
     if (!sound) throw ProgramError(file.string() + ": this is not a complete state of the grains");
   };
-  const auto skip_to = [&](std::string_view heading) {
-    std::string line;
-    while (std::getline(text, line) && !line.starts_with(heading)) {
-    }
-  };
+  // Three sections of 2, 2 and 4 lines give the step, the number of atoms and the box; then follows
+  // the line with the names of the columns.
+  std::array<std::string, 9> head;
+  for (std::string& line : head) std::getline(text, line);
   State state;
-  skip_to("ITEM: TIMESTEP");
-  text >> state.step;
-  skip_to("ITEM: NUMBER OF ATOMS");
-  std::size_t atoms = 0;
-  require((text >> atoms) && atoms == grains + 1);
-  skip_to("ITEM: ATOMS");
+  state.step = read_number<std::uint64_t>(head[1]).value_or(0);
+  require(head[8].starts_with("ITEM: ATOMS") && read_number<std::size_t>(head[3]) == grains + 1);
   const auto columns = static_cast<Eigen::Index>(grains);
   state.position.resize(3, columns);
   state.velocity.resize(3, columns);

@@ -23,7 +23,6 @@ struct LammpsTask {
   std::uint64_t end = 0;            ///< last step
   std::uint64_t stride = 1;         ///< steps between frames; the last step has a frame too
   std::uint64_t check_every = 100;  ///< steps between two checks for the file `stop`
-  bool added_mass = true;           ///< implicit drag; false: explicit drag (error of order dt)
   Units units = {1, 1};             ///< of lengths and masses in data file and deck
 };
 
