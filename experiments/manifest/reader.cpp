@@ -6,8 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/algorithm/string/erase.hpp>
-#include <boost/algorithm/string/replace.hpp>
 #include <boost/algorithm/string/trim_all.hpp>
 #include <cctype>
 #include <functional>
@@ -16,10 +14,8 @@
 #include <map>
 #include <numeric>
 #include <ranges>
-#include <regex>
 #include <set>
 #include <span>
-#include <sstream>
 #include <utility>
 
 #include "analysis/estimators.hpp"
@@ -148,7 +144,8 @@ void fields(Scale& scale, const auto& visit) {
          .doc = "initial state: the state of a recorded run, with different noise for each seed, "
                 "or the grains of a file. Default: loose grains that settle",
          .example = "{experiment: drag, variant: \"fluid=still\", seed: 3, cycle: 10, noise_d: "
-                    "1.0e-13}"});
+                    "1.0e-13}",
+         .wanted = "a map with one of the keys experiment, checkpoint and file"});
   visit(scale.seeds,
         {.name = "seeds",
          .doc = "`6` means the seeds 1 to 6. Other seeds: `2001-2040` or `[1-6, 9]`. Default 1",
@@ -494,14 +491,6 @@ string remedy_of(const Field& about) {
                                : fmt::format("It takes `{}`{}.", about.example, about.besides);
 }
 
-// The remedy if a value is not a map. For `start` it is a map of the likely key and this value.
-string remedy_for(const Node& in, const Field& about) {
-  if (about.name != "start" || !in.is_scalar()) return remedy_of(about);
-  const auto holds = [&](char c) { return in.text.find(c) != string::npos; };
-  const char* key = holds('@') ? "checkpoint" : holds('.') || holds('/') ? "file" : "experiment";
-  return fmt::format("Write `{{{}: {}}}`.", key, printable(in.text));
-}
-
 bool is_rgb(const Node& in) {
   const string& text = in.text;
   return in.is_scalar() && text.starts_with('#') && text.size() == 7 &&
@@ -510,41 +499,6 @@ bool is_rgb(const Node& in) {
 
 bool is_auto(const Field& field, const Node& node) {
   return takes_auto(field.name) && node.is_scalar() && node.text == "auto";
-}
-
-// Translates an expression from other notations: phi**2 to phi^2. "" if the result is not valid.
-string meant_expression(const string& text) {
-  static const std::pair<std::regex, const char*> notations[] = {
-      {std::regex("\\*\\*"), "^"},
-      {std::regex("\xc2\xb2"), "^2"},
-      {std::regex("\xc2\xb3"), "^3"},
-      {std::regex("\xc2\xb7|\xc3\x97"), "*"},
-      {std::regex("\xc3\xb7"), "/"},
-      {std::regex("\xe2\x88\x92"), "-"},
-      {std::regex("\\b(np|numpy|math)\\."), ""},
-      {std::regex("\\blog\\("), "ln("},
-      {std::regex("\\bpow\\(([^(),]+),([^(),]+)\\)"), "($1)^($2)"},
-      {std::regex("(^|[-+*/^(] *)([0-9]*\\.?[0-9]+) *(?=[A-Za-z_(])(?![eE][-+0-9])"), "$1$2*"}};
-  if (text.size() > 200) return "";  // limits the recursion of std::regex
-  string meant = text;
-  for (const auto& [notation, ours] : notations) meant = std::regex_replace(meant, notation, ours);
-  return is_expression(meant) && wrong_in_expression(meant).empty() ? meant : "";
-}
-
-constexpr const char* kAllSeeds =
-    "Plots and claims use all seeds. `show: traces` draws a line for each run.";
-
-bool is_seed(string_view key) {
-  return key == "seed" || key == "seeds";
-}
-
-// Whether the text consists of two or more `terms`, separated by blanks.
-bool lacks_operator(const string& text, std::span<const string_view> terms) {
-  std::istringstream words(text);
-  const std::vector<string> names{std::istream_iterator<string>(words), {}};
-  return names.size() > 1 && std::ranges::all_of(names, [&](const string& name) {
-           return std::ranges::count(terms, name) > 0;
-         });
 }
 
 // Reads the values of keys into the members of structs. After a problem, reading continues, so that
@@ -594,23 +548,11 @@ struct Reader {
   // Reports a key that is not one of the `allowed` keys of its map, and says what to write.
   void reject_unknown(const Node& in, const Names& allowed) {
     static const std::vector<Field> sections = keys_of<Manifest>();
-    if (in.key == "<<")
-      return reject_key(in, "merge keys are not supported", "Write the values out.");
     if (read_number<double>(in.key)) {
       return reject_key(in, "is a number, but a key is expected", kDecimalPoint);
     }
     if (in.path == printable(in.key) && find_field(in.key) != nullptr) {  // at the top level
       return reject_key(in, "is a parameter", "Move it under `base:`.");
-    }
-    for (const string_view known : allowed) {
-      const Field* field = find_field(known);
-      const auto factor = unit_factor(in.key, known);
-      if (field == nullptr || !has_unit(*field) || !factor) continue;
-      const auto number = read_number<double>(in.text);
-      return reject_key(
-          in, "is an unknown key",
-          number ? fmt::format("Write `{}: {:.12g}`.", known, *number * *factor)
-                 : fmt::format("Write {}, with each value multiplied by {:g}.", known, *factor));
     }
     const Tried* tried = find_tried(in.key, allowed);
     if (tried != nullptr && !tried->remark.empty()) {
@@ -672,9 +614,7 @@ struct Reader {
   // Whether the expression can be evaluated and all names in it are known.
   bool check_expression(const Node& in, const Field& about) {
     if (const string wrong = wrong_in_expression(in.text); !wrong.empty()) {
-      const string meant = meant_expression(in.text);
-      reject_value(in, wrong,
-                   meant.empty() ? expression_syntax() : fmt::format("Write `{}`.", meant));
+      reject_value(in, wrong, expression_syntax());
       return false;
     }
     bool of_run = false, of_checkpoint = false;
@@ -712,7 +652,6 @@ struct Reader {
       }
       return;
     }
-    if (is_seed(in.key)) return reject_key(in, "is not a parameter", kAllSeeds);
     static const Field cycle = {.name = "cycle", .range = kCycles};  // a key for plots
     const Field* field = in.key == cycle.name ? &cycle : find_field(in.key);
     if (field == nullptr) return reject_unknown(in, parameters());
@@ -813,13 +752,8 @@ struct Reader {
   // Reads an expression, a free text, a choice from a list, or a name. `about` decides which.
   void read(const Node& in, const Field& about, string& value) {
     const string& text = in.text;
-    const bool takes_expressions = in.is_scalar() && !about.terms.empty();
-    if (takes_expressions && (is_expression(text) || !meant_expression(text).empty())) {
+    if (in.is_scalar() && !about.terms.empty() && is_expression(text)) {
       if (check_expression(in, about)) value = text;
-    } else if (takes_expressions && lacks_operator(text, about.terms)) {
-      reject_value(in, "lacks an operator between two names", expression_syntax());
-    } else if (about.is_choice() && is_seed(text)) {
-      reject_value(in, "is not a parameter", kAllSeeds);
     } else if (!about.besides.empty() && is_rgb(in)) {
       value = text;
     } else if (about.is_choice()) {
@@ -938,13 +872,7 @@ struct Reader {
     // "base" is the variant of an experiment without a sweep.
     if (about.name == "variant" && in.is_scalar() && in.text == "base") return;
     if (in.is_scalar()) {
-      const auto labels = values_of(document.find("labels"));
-      const auto label = std::ranges::find(labels, in.text, &Node::text);
-      return reject_type(in, "a map of swept values",
-                         label == labels.end()
-                             ? remedy_of(about)
-                             : fmt::format("Write the swept values of this label: `\"{}\"`.",
-                                           printable(label->key)));
+      return reject_type(in, "a map of swept values", remedy_of(about));
     }
     if (!in.is_map()) return reject_type(in, "a map", remedy_of(about));
     for (const Node& part : in.parts) read_where(part, where);
@@ -1113,13 +1041,6 @@ struct Reader {
                             : "Set it in `base` or in a scale.");
         continue;
       }
-      if (part.is_scalar() && part.text.find('(') != string::npos) {
-        // In `{KEY: f(1, 2)}`, YAML reads the text after the comma as another key.
-        return reject_type(part, "a list",
-                           fmt::format("Functions are not known. Write the values as a list, or a "
-                                       "range such as {}.",
-                                       kRangeExample));
-      }
       SweepAxis& axis = axes.emplace_back(SweepAxis{part.key, part.key_at, {}});
       const bool is_range = part.kind == Node::Kind::map && !field->is_choice();
       const std::vector<Node> range = is_range ? written_out(part, *field) : std::vector<Node>();
@@ -1192,12 +1113,6 @@ struct Reader {
 
   void read(const Node& in, const Field&, Seeds& seeds) {
     const auto is_range = [](const Node& node) { return node.text.find('-', 1) != string::npos; };
-    if (in.text.find(',') != string::npos && in.text.find(",0") == string::npos &&
-        in.text.find_first_not_of("0123456789-, ") == string::npos) {
-      const string list = boost::erase_all_copy(in.text, " ");
-      return reject_value(in, "is not a list",
-                          fmt::format("Write `[{}]`.", boost::replace_all_copy(list, ",", ", ")));
-    }
     seeds = {.counted = in.kind != Node::Kind::list && !is_range(in), .at = in.key_at};
     if (seeds.counted) {
       std::uint64_t count = 1;
@@ -1248,7 +1163,7 @@ struct Reader {
     value = {};
     if constexpr (requires { value.at; }) value.at = in.at;
     if (!in.is_map()) {
-      return reject_type(in, about.wanted.empty() ? "a map" : about.wanted, remedy_for(in, about));
+      return reject_type(in, about.wanted.empty() ? "a map" : about.wanted, remedy_of(about));
     }
     read_keys(in, value);
     for (const Field& key : keys_of<T>()) {

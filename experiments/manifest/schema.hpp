@@ -115,11 +115,6 @@ bool enters(const Identity& identity, StageKind stage, std::optional<ProtocolKin
 /// The allowed values: "a number > 0 and <= 1e+06", "one of still, cell".
 std::string expected_values(const Field& field);
 
-/// The factor that converts a number from the unit `written` to `unit` if these differ only in one
-/// SI prefix: 0.001 for "mm" and "m". Keys that end with their unit are converted alike:
-/// "drag_g_per_s". Returns nothing for other texts.
-std::optional<double> unit_factor(std::string_view written, std::string_view unit);
-
 /// The table of parameters in experiments/REFERENCE.md.
 std::string schema_markdown();
 
