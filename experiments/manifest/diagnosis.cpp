@@ -855,14 +855,7 @@ void check_variants(const Manifest& manifest) {
 std::vector<string> warnings_of(const Manifest& manifest) {
   std::vector<string> warnings;
   const auto check = [&](const auto& place, const string& name,
-                         std::initializer_list<json> selections, std::vector<string> problems) {
-    for (const json& where : selections) {
-      for (const json& one : member_of(where, "experiment")) {
-        if (std::ranges::count(manifest.of, one.get<string>()) > 0) continue;
-        problems.push_back(format("`of` does not list the experiment {}. Write one of {}.",
-                                  printable(one.get<string>()), fmt::join(manifest.of, ", ")));
-      }
-    }
+                         const std::vector<string>& problems) {
     for (const string& problem : problems) {
       if (problem.empty()) continue;
       warnings.push_back(
@@ -870,12 +863,10 @@ std::vector<string> warnings_of(const Manifest& manifest) {
     }
   };
   for (const Placed<PlotSpec>& plot : manifest.plots) {
-    check(plot, "plot " + plot.name, {plot.where, plot.minus}, {unused_cycle(plot)});
-    for (const SeriesSpec& one : plot.series) check(plot, "plot " + plot.name, {one.where}, {});
+    check(plot, "plot " + plot.name, {unused_cycle(plot)});
   }
   for (const Placed<ClaimSpec>& claim : manifest.claims) {
-    check(claim, "claim " + claim.id, {claim.where, claim.between[0], claim.between[1]},
-          problems_of_sides(claim, {}, false));
+    check(claim, "claim " + claim.id, problems_of_sides(claim, {}, false));
   }
   return warnings;
 }

@@ -508,6 +508,7 @@ struct Reader {
   const Node& document;
   const Scale& base;                             // the keys that apply to all scales
   std::span<const Figure> figures_to_list = {};  // the figures allowed in `figures`
+  Names experiments = {};  // the experiments whose runs plots and claims can select
 
   // Reports keys that cannot be used in a manifest with the key `of`.
   void check_of() {
@@ -637,47 +638,34 @@ struct Reader {
     return !(of_run && of_checkpoint);
   }
 
-  // Adds to `where` a parameter with its value, its list of values or its range.
+  // Adds to `where` a parameter with its value, its list of values or its range. `experiment` and
+  // `cycle` are no parameters, but select runs and checkpoints.
   void read_where(const Node& in, json& where) {
-    static const Field experiment = {.name = "experiment", .longest = kLongestName};
-    if (in.key == experiment.name) {
-      std::vector<string> any(in.kind == Node::Kind::list ? 0 : 1);
-      any.empty() ? read(in, {.name = "of", .longest = kLongestName}, any)
-                  : read(in, experiment, any.front());
-      where[in.key] = any;
-      const Node* own = document.find("experiment");
-      if (document.find("of") == nullptr && (own == nullptr || any != std::vector{own->text})) {
-        reject_key(in, "can only be used with `of`",
-                   "Leave it out, because this manifest has the runs of one experiment.");
-      }
-      return;
-    }
-    static const Field cycle = {.name = "cycle", .range = kCycles};  // a key for plots
-    const Field* field = in.key == cycle.name ? &cycle : find_field(in.key);
-    if (field == nullptr) return reject_unknown(in, parameters());
-    if (field != &cycle && !field->identity.distinguishes_runs()) {
-      return reject_key(in, "does not distinguish runs",
-                        "Use a parameter that distinguishes runs, such as `fluid`.");
+    const Field others[] = {{.name = "experiment", .names = experiments},
+                            {.name = "cycle", .range = kCycles}};
+    const Field* parameter = find_field(in.key);
+    const Field* other = find_named(others, in.key);
+    if (other == nullptr && (parameter == nullptr || !parameter->identity.distinguishes_runs())) {
+      return reject_unknown(in, parameters());
     }
     if (where.contains(in.key)) return reject_key(in, "appears twice", "Write it once.");
+    Field field = other != nullptr ? *other : *parameter;
+    field.get = nullptr;  // a remedy must not suggest a sweep
     if (in.kind == Node::Kind::list) {
       json& any = where[in.key] = json::array();
       for (const Node& item : items_of(in, "[1, 2]")) {
-        if (auto read = read_scalar(item, *field)) any.push_back(std::move(*read));
+        if (auto read = read_scalar(item, field)) any.push_back(std::move(*read));
       }
-    } else if (in.kind == Node::Kind::map && field->is_choice()) {
-      reject_type(in, "a value or a list of values", remedy_of(*field));
-    } else if (in.kind == Node::Kind::map) {
+    } else if (in.is_map() && !field.is_choice()) {
       json& range = where[in.key] = json::object();
       for (const Node& end : in.parts) {
         if (end.key != "min" && end.key != "max") {
-          reject_key(end, "is not a limit of a range", "Write numbers as `{min: 1, max: 2}`.");
-        } else if (auto read = read_scalar(end, *field)) {
+          reject_unknown(end, {"min", "max"});
+        } else if (auto read = read_scalar(end, field)) {
           range[end.key] = std::move(*read);
         }
       }
-      if (in.parts.empty()) reject(in, "has no limits", "Write `{min: 1, max: 2}`.");
-    } else if (auto read = read_scalar(in, *field)) {
+    } else if (auto read = read_scalar(in, field)) {
       where[in.key] = std::move(*read);
     }
   }
@@ -1312,8 +1300,6 @@ struct Reader {
         where[""] = part.key;
         reject_key(part, "names no parameter",
                    "Write `\"KEY=VALUE\"`, set `by` to the parameter, or name a measure in `y`.");
-      } else if (plot.by == "experiment") {
-        where[plot.by] = part.key;
       } else {
         read_where({.kind = Node::Kind::scalar,
                     .at = part.key_at,
@@ -1493,6 +1479,12 @@ Manifest read_manifest(string_view text, string_view file, bool shipped) {
   manifest.base.at = root.at;
   const std::span<const Figure> known = shipped ? computed_figures() : all_figures();
   Reader reader{problems, root, manifest.base, known};
+  const Node *of = root.find("of"), *own = root.find("experiment");
+  for (const Node& one : of != nullptr    ? std::span(of->parts)
+                         : own != nullptr ? std::span(own, 1)
+                                          : std::span<const Node>()) {
+    reader.experiments.push_back(one.text);
+  }
   if (root.kind != Node::Kind::map) {
     reader.reject_type(root, "a map of keys", "Begin with `experiment: NAME`.");
     problems.raise();
