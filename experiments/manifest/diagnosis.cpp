@@ -843,8 +843,13 @@ void check_variants(const Manifest& manifest) {
                  printable(claim.statement), "Begin it with a letter or a digit.");
   }
   for (const Scale& scale : scales) {
+    std::set<json> known;
     for (const Variant& variant : variants_of(scale)) {
       VariantCheck{manifest, scale, variant, problems}.run();
+      if (known.insert(variant.swept).second) continue;
+      const Sweep& sweep = scale.sweep;
+      problems.add((sweep.grid.empty() ? sweep.zip : sweep.grid).front().at, "sweep",
+                   "gives the same variant twice", variant.name, "Keep one of them.");
     }
   }
   problems.raise();  // check_primary() needs valid variants

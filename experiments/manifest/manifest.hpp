@@ -113,9 +113,9 @@ struct Until {
   bool operator==(const Until&) const = default;
 };
 
-/// Why `until` cannot use the measure; "" if it can. The measure must have one value for each
-/// checkpoint, computed from this checkpoint alone and without a simulation.
-std::string_view why_not_until(std::string_view measure);
+/// Whether `until` can use the measure: it must have one value for each checkpoint, computed from
+/// this checkpoint alone and without a simulation.
+bool can_be_until(std::string_view measure);
 
 /// {"crystalline_percent": 10, "extra_cycles": 15}, as a manifest writes it.
 nlohmann::json to_json(const Until& until);

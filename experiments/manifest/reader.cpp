@@ -91,7 +91,9 @@ Field field_of_until(const Measure& one) {
 
 void fields(Until& until, const auto& visit) {
   for (const Provider& by : all_providers()) {
-    for (const Measure& one : by.measures) visit(until.value, field_of_until(one));
+    for (const Measure& one : by.measures) {
+      if (can_be_until(one.name)) visit(until.value, field_of_until(one));
+    }
   }
   visit(until.extra_cycles, {.name = "extra_cycles", .range = kCycles});
 }
@@ -143,9 +145,9 @@ void fields(Scale& scale, const auto& visit) {
         {.name = "start",
          .doc = "initial state: the state of a recorded run, with different noise for each seed, "
                 "or the grains of a file. Default: loose grains that settle",
+         .besides = ", or `{file: packing.extxyz}`",
          .example = "{experiment: drag, variant: \"fluid=still\", seed: 3, cycle: 10, noise_d: "
-                    "1.0e-13}",
-         .wanted = "a map with one of the keys experiment, checkpoint and file"});
+                    "1.0e-13}"});
   visit(scale.seeds,
         {.name = "seeds",
          .doc = "`6` means the seeds 1 to 6. Other seeds: `2001-2040` or `[1-6, 9]`. Default 1",
@@ -155,15 +157,13 @@ void fields(Scale& scale, const auto& visit) {
          .doc = "`every_cycles`: number of cycles between checkpoints, default 1; the last cycle "
                 "always has a checkpoint. `phases`: after each of these checkpoints, there are "
                 "more at the given fractions of the next cycle (pause included); default none",
-         .example = "{every_cycles: 1, phases: [0.25, 0.5, 0.75]}",
-         .wanted = "a map of settings"});
+         .example = "{every_cycles: 1, phases: [0.25, 0.5, 0.75]}"});
   visit(scale.until,
         {.name = "until",
          .doc = "ends a run `extra_cycles` cycles after the end of the first cycle at which the "
                 "measure reaches the value. Default: the run ends at `cycles`",
          .besides = ", or `none`",
-         .example = "{crystalline_percent: 10, extra_cycles: 15}",
-         .wanted = "a measure with the value to reach"});
+         .example = "{crystalline_percent: 10, extra_cycles: 15}"});
   visit(scale.looks, {.name = "looks",
                       .range = {least_runs, ManifestLimits::runs},
                       .doc = "planned looks (interim analyses), each given by the number of seeds "
@@ -412,8 +412,7 @@ void fields(Manifest& manifest, const auto& visit) {
   visit(manifest.labels, {.name = "labels",
                           .doc = "display names of variants, for drawings, captions, claims, "
                                  "progress messages, `status` and `table`",
-                          .example = "{\"fluid=still\": fluid at rest}",
-                          .wanted = "a map of names"});
+                          .example = "{\"fluid=still\": fluid at rest}"});
   visit(manifest.plots, {.name = "plots",
                          .doc = "your own figures",
                          .example = "[{name: compaction, y: phi, x: cycle}]"});
@@ -641,8 +640,8 @@ struct Reader {
   // Adds to `where` a parameter with its value, its list of values or its range. `experiment` and
   // `cycle` are no parameters, but select runs and checkpoints.
   void read_where(const Node& in, json& where) {
-    const Field others[] = {{.name = "experiment", .names = experiments},
-                            {.name = "cycle", .range = kCycles}};
+    const std::array others = {Field{.name = "experiment", .names = experiments},
+                               Field{.name = "cycle", .range = kCycles}};
     const Field* parameter = find_field(in.key);
     const Field* other = find_named(others, in.key);
     if (other == nullptr && (parameter == nullptr || !parameter->identity.distinguishes_runs())) {
@@ -781,22 +780,13 @@ struct Reader {
     const std::size_t problems_before = problems.size();
     const std::span<const Node> parts = items_of(in, about.example);
     for (std::size_t k = 0; k < std::min<std::size_t>(parts.size(), 2); ++k) {
-      if (!sides || parts[k].is_map() || parts[k].is_scalar()) read(parts[k], each, both[k]);
+      read(parts[k], each, both[k]);
     }
     bool fits = parts.size() == 2;
-    if constexpr (sides) {
-      fits = fits && !both[0].empty() && !both[1].empty();
-    } else {
-      fits = fits && (both[0] < both[1] || (whole && both[0] == both[1]));
-    }
+    if constexpr (!sides) fits = fits && (both[0] < both[1] || (whole && both[0] == both[1]));
     if (fits || problems.size() > problems_before) return;
-    const bool reversed = !sides && parts.size() == 2 && both[1] < both[0];
-    reject(
-        in,
-        sides   ? "does not name two variants"
-        : whole ? "is not a first and a last cycle"
-                : "is not a window from a low to a high value",
-        reversed ? fmt::format("Write [{}, {}].", parts[1].text, parts[0].text) : remedy_of(about));
+    reject(in, sides ? "does not name two variants" : "is not a lower and an upper value",
+           remedy_of(about));
   }
 
   // Reads measures, or a map from names of columns to measures. The columns of `y` come before the
@@ -818,8 +808,9 @@ struct Reader {
     all.insert(is_y ? all.begin() : all.end(), columns.begin(), columns.end());
   }
 
-  template <HasFields T>
+  template <class T>
   void read(const Node& in, const Field& about, std::vector<T>& values) {
+    values.clear();  // a scale begins with the values of the top level
     Field item = about;
     item.example = about.example.substr(1, about.example.size() - 2);  // without the brackets
     for (const Node& each : items_of(in, about.example)) read(each, item, values.emplace_back());
@@ -870,6 +861,7 @@ struct Reader {
   template <class T>
   requires(std::is_arithmetic_v<T>) void read(const Node& in, const Field& about,
                                               std::vector<T>& numbers) {
+    numbers.clear();
     constexpr bool phases = !std::is_integral_v<T>;
     for (const Node& item : items_of(in, about.example)) {
       const auto read = read_scalar(item, with_type<T>({.range = about.range}));
@@ -878,9 +870,8 @@ struct Reader {
       if (phases && !(number > 0 && number < 1)) {
         reject_value(item, "is not within a cycle", "Write fractions p of a cycle, 0 < p < 1.");
       } else if (!numbers.empty() && number <= numbers.back()) {
-        reject_value(item,
-                     fmt::format("is not greater than the {} before it", phases ? "phase" : "look"),
-                     fmt::format("List them in ascending order{}.", phases ? ", each once" : ""));
+        reject_value(item, "is not greater than the value before it",
+                     "List the values in ascending order, each once.");
       } else {
         numbers.push_back(number);
       }
@@ -893,9 +884,7 @@ struct Reader {
       read(item, {.longest = about.longest}, name);
       if (name.empty()) continue;
       if (std::ranges::find(names, name) != names.end()) {
-        reject_value(item,
-                     about.name == "of" ? "names an experiment twice" : "names a figure twice",
-                     "Keep one of them.");
+        reject_value(item, "is listed twice", "Keep one of them.");
       } else if (about.name == "figures" && find_named(figures_to_list, name) == nullptr) {
         reject_value(item, with_nearest("lists an unknown figure", name, names_of(figures_to_list)),
                      "`shearcell figures --help` lists them.");
@@ -904,19 +893,13 @@ struct Reader {
     }
   }
 
-  void read(const Node& in, const Field& about, std::vector<PrimaryClaim>& claims) {
-    claims.clear();
-    for (const Node& item : items_of(in, about.example)) {
-      PrimaryClaim claim{"", item.at};
-      read(item, {.longest = about.longest}, claim.id);
-      reject_value_if(std::ranges::count(claims, claim.id, &PrimaryClaim::id) > 0, &item,
-                      "names a claim twice", "Keep one of them.");
-      claims.push_back(std::move(claim));
-    }
+  void read(const Node& in, const Field& about, PrimaryClaim& claim) {
+    claim.at = in.at;
+    read(in, {.longest = about.longest}, claim.id);
   }
 
   void read(const Node& in, const Field& about, std::vector<VariantLabel>& labels) {
-    if (!in.is_map()) return reject_type(in, about.wanted, remedy_of(about));
+    if (!in.is_map()) return reject_type(in, "a map", remedy_of(about));
     for (const Node& part : in.parts) {
       VariantLabel& label = labels.emplace_back();
       read(part, {.longest = 60}, label.name);
@@ -948,15 +931,10 @@ struct Reader {
     }
     settings.clear();
     for (const Node& part : settings_in(in)) {
-      const Field* field = find_field(part.key);
       if (!read_parameter(part, settings)) {
         reject_unknown(part, names_of(schema()));
       } else if (about.name == "settle" && !may_differ_in_settling(part.key)) {
-        const bool of_shear = field->identity.stage != StageKind::prepare;
-        reject_key(
-            part,
-            of_shear ? "has no effect on a packing" : "must be the same for packing and shear",
-            "Set it in `base` or in a scale.");
+        reject_key(part, "has no own value for the packing", "Set it in `base` or in a scale.");
       }
     }
   }
@@ -997,7 +975,7 @@ struct Reader {
   std::vector<Node> written_out(const Node& in, const Field& field) {
     ValueRange range;
     const std::size_t problems_before = problems.size();
-    read(in, {.example = kRangeExample, .wanted = "a range"}, range);
+    read(in, {.example = kRangeExample}, range);
     if (problems.size() > problems_before) return {};
     std::vector<Node> values(range.count, *in.find("from"));
     values.back() = *in.find("to");
@@ -1012,7 +990,7 @@ struct Reader {
   }
 
   void read(const Node& in, const Field& about, std::vector<SweepAxis>& axes) {
-    if (!in.is_map()) return reject_value(in, "sweeps nothing", "Write `{key: [values]}`.");
+    if (!in.is_map()) return reject_type(in, "a map", "Write `{key: [values]}`.");
     for (const Node& part : in.parts) {
       static const Field seeds = {
           .name = "seeds", .range = {1, ManifestLimits::runs}, .whole = true};
@@ -1024,9 +1002,8 @@ struct Reader {
       const bool length = is_length(field->name);
       if (!field->identity.distinguishes_runs() && !(about.name == "zip" && length)) {
         reject_key(part, "cannot be swept: runs with different values would be the same run",
-                   field == &seeds ? "Write `seeds: 6` beside `sweep`: each variant gets all seeds."
-                   : length ? "Set it in `base` or in a scale, or zip it with a swept parameter."
-                            : "Set it in `base` or in a scale.");
+                   length ? "Set it in `base` or in a scale, or zip it with a swept parameter."
+                          : "Set it in `base` or in a scale.");
         continue;
       }
       SweepAxis& axis = axes.emplace_back(SweepAxis{part.key, part.key_at, {}});
@@ -1035,68 +1012,11 @@ struct Reader {
       const string example = field->is_choice() ? fmt::format("[{}]", fmt::join(field->names, ", "))
                                                 : "[1, 2], or " + string(kRangeExample);
       for (const Node& item : is_range ? std::span(range) : items_of(part, example)) {
-        if (is_auto(*field, item)) {
-          reject(item, "cannot be swept as `auto`",
-                 "Set it to `auto` in `base` or a scale. Each variant gets its own value.");
-        } else if (auto value = read_scalar(item, *field)) {
+        if (auto value = read_scalar(item, *field)) {
           axis.values.push_back({std::move(*value), item.at});
         }
       }
     }
-  }
-
-  void read(const Node& in, const Field&, Sweep& sweep) {
-    const string remedy = "Write `grid: {key: [values]}` or `zip: {key: [values]}`.";
-    sweep = {};
-    if (!in.is_map()) return reject_value(in, "sweeps nothing", remedy);
-    for (const Node& part : in.parts) {
-      if (read_key(part, sweep)) continue;
-      if (find_field(part.key) != nullptr) {
-        reject_key(part, "must be under `grid` or `zip`", remedy);
-      } else {
-        reject_unknown(part, names_of(keys_of<Sweep>()));
-      }
-    }
-    for (const SweepAxis& axis : sweep.grid) {
-      const string path = fmt::format("{}.grid.{}", in.path, axis.key);
-      check_rows({&axis, 1}, path, "value");
-      if (std::ranges::find(sweep.zip, axis.key, &SweepAxis::key) != sweep.zip.end()) {
-        problems.add(axis.at, path, "is in both grid and zip", "", "Keep one of them.");
-      }
-    }
-    if (!sweep.zip.empty()) check_zip(sweep.zip, in.path + ".zip");
-  }
-
-  // Reports each row of values that repeats an earlier row.
-  void check_rows(std::span<const SweepAxis> axes, const string& path, const char* row_of) {
-    std::set<json> seen;
-    for (std::size_t row = 0; row < axes.front().values.size(); ++row) {
-      json values = json::array();
-      for (const SweepAxis& axis : axes) {
-        if (!is_length(axis.key)) values.push_back(axis.values[row].value);
-      }
-      if (seen.insert(values).second) continue;
-      problems.add(axes.front().values[row].at, path, fmt::format("repeats a {}", row_of),
-                   printable((row_of == string_view("value") ? values[0] : values).dump()),
-                   "Keep one of them.");
-    }
-  }
-
-  void check_zip(std::span<const SweepAxis> zip, const string& path) {
-    const SweepAxis& first = zip.front();
-    if (zip.size() == 1 && is_length(first.key)) {
-      return problems.add(first.at, path + "." + first.key, "is the only key of the zip", "",
-                          "Set it in `base` or in a scale.");
-    }
-    const std::size_t rows = first.values.size();
-    for (const SweepAxis& axis : zip) {
-      if (axis.values.size() == rows) continue;
-      return problems.add(axis.at, path + "." + axis.key,
-                          fmt::format("differs in length from {}, which has {}", first.key, rows),
-                          counted(axis.values.size(), "value"),
-                          "Give all lists of a zip the same length.");
-    }
-    check_rows(zip, path, "row of values");
   }
 
   void read(const Node& in, const Field&, Seeds& seeds) {
@@ -1151,7 +1071,7 @@ struct Reader {
     value = {};
     if constexpr (requires { value.at; }) value.at = in.at;
     if (!in.is_map()) {
-      return reject_type(in, about.wanted.empty() ? "a map" : about.wanted, remedy_of(about));
+      return reject_type(in, "a map", remedy_of(about));
     }
     read_keys(in, value);
     for (const Field& key : keys_of<T>()) {
@@ -1161,20 +1081,29 @@ struct Reader {
     check(in, about, value);
   }
 
+  void check(const Node& in, const Field&, Sweep& sweep) {
+    for (const SweepAxis& axis : sweep.grid) {
+      if (std::ranges::count(sweep.zip, axis.key, &SweepAxis::key) == 0) continue;
+      problems.add(axis.at, fmt::format("{}.grid.{}", in.path, axis.key), "is in both grid and zip",
+                   "", "Keep one of them.");
+    }
+    for (const SweepAxis& axis : sweep.zip) {
+      const auto& [first, at, values] = sweep.zip.front();
+      if (axis.values.size() == values.size()) continue;
+      problems.add(axis.at, fmt::format("{}.zip.{}", in.path, axis.key),
+                   fmt::format("differs in length from {}, which has {}", first, values.size()),
+                   counted(axis.values.size(), "value"),
+                   "Give all lists of a zip the same length.");
+    }
+  }
+
   void check(const Node& in, const Field& about, Until& until) {
-    static const std::vector<Field> known = keys_of<Until>();
-    bool named = false;
-    for (const Node& part : in.parts) {
-      if (part.key == "extra_cycles" || find_named(known, part.key) == nullptr) continue;
-      if (named) problems.add(part.key_at, in.path, "names two measures", "", "Keep one of them.");
-      named = true;
-      until.measure = part.key;
-      const string why(why_not_until(part.key));
-      if (!why.empty()) reject_key(part, why, "Use another measure, such as phi.");
+    const auto is_measure = [](const Node& part) { return part.key != "extra_cycles"; };
+    const auto measure = std::ranges::find_if(in.parts, is_measure);
+    if (std::ranges::count_if(in.parts, is_measure) != 1) {
+      return reject(in, "does not name one measure", remedy_of(about));
     }
-    if (!named && in.parts.size() == 1 && in.find("extra_cycles") != nullptr) {
-      reject(in, "contains no measure", remedy_of(about));
-    }
+    until.measure = measure->key;
   }
 
   void check(const Node& in, const Field&, Checkpoints& checkpoints) {

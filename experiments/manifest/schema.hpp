@@ -58,7 +58,6 @@ struct Field {
   bool whole = false;                            ///< only whole numbers are allowed
   std::span<const std::string_view> terms = {};  ///< names allowed in expressions; if empty, none
   std::string_view example = {};                 ///< as YAML
-  std::string_view wanted = {};  ///< kind of value, for messages: "a map of settings"
   bool required = false;
   std::size_t longest = 0;  ///< maximum length of a free text [bytes]
   bool folds = false;       ///< the text may have several lines, which become one
