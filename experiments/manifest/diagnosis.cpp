@@ -210,9 +210,6 @@ struct VariantCheck {
     if (start.run.empty() && find("start_seed") == nullptr) {
       refuse(start.at, "start", "lacks seed", "Give the seed of the recorded run: `seed: 3`.");
     }
-    if (!start.run.empty() && find("start_seed") != nullptr) {
-      report("start_seed", "cannot be used with checkpoint, which has one seed", "Leave it out.");
-    }
     if (scale.settle_at.line > 0) {
       refuse(scale.settle_at, "settle", "has no effect with start, because nothing settles",
              "Leave it out.");

@@ -302,7 +302,8 @@ void fields(Placed<ClaimSpec>& claim, const auto& visit) {
       joined(measures(MeasureKind::number), measures(MeasureKind::run));
   static const Names can_be_by = joined({"experiment"}, parameters()),
                      estimators = names_of(all_estimators());
-  static const Names terms = joined({"cycle"}, can_be_compared, numbers());
+  static const Names can_be_against = joined(can_be_compared, numbers()),
+                     terms = joined({"cycle"}, can_be_against);
   visit(claim.id,
         {.name = "id",
          .doc = "required; letters, digits, -, _ and dots. `primary` and verdicts refer to the "
@@ -325,8 +326,8 @@ void fields(Placed<ClaimSpec>& claim, const auto& visit) {
       {.name = "against",
        .doc = "with `estimator: slope`: the column of the x axis, taken at the first checkpoint of "
               "each run. With `spread_ratio`: the column whose standard deviation is the divisor",
-       .names = terms,
-       .terms = terms});
+       .names = can_be_against,
+       .terms = can_be_against});
   visit(claim.where, {.name = "where",
                       .doc = "selects runs for both sides of the claim: values, lists of values, "
                              "or ranges `{min: 5200}`",
@@ -752,8 +753,9 @@ struct Reader {
                            fmt::format("It takes one {} of at most {} bytes.",
                                        about.folds ? "text" : "line", about.longest));
       }
-      reject_value_if(about.name == "cannot_be_decided" && as_seen(value).empty(), &in,
-                      "has no visible characters", "Write the reason, or leave out the key.");
+      const bool needs_text = about.name == "cannot_be_decided" || about.name == "file";
+      reject_value_if(needs_text && as_seen(value).empty(), &in, "has no visible characters",
+                      "Write a text, or leave out the key.");
       reject_value_if(about.name.ends_with("label") && std::ranges::count(text, '$') % 2 == 1, &in,
                       "has an odd number of $", "Write a formula between two $.");
     } else if (in.is_scalar() && is_name(text)) {
@@ -1036,16 +1038,14 @@ struct Reader {
     seeds.values.clear();
     std::set<std::uint64_t> known;
     for (const Node& item : is_range(in) ? std::span(&in, 1) : items_of(in, "[3, 5]")) {
-      std::array<std::uint64_t, 2> ends = {};
-      for (const bool last : {false, true}) {
-        Node end = item;
-        if (is_range(item)) {
-          const std::size_t dash = item.text.find('-', 1);
-          end.text = trimmed(last ? item.text.substr(dash + 1) : item.text.substr(0, dash));
-        }
-        read(end, {.range = {1, kLargestSeed}, .whole = true}, ends[last ? 1 : 0]);
-      }
-      const auto [first, last] = ends;
+      const Field each = {.range = {1, kLargestSeed}, .whole = true};
+      const std::size_t dash = is_range(item) ? item.text.find('-', 1) : string::npos;
+      std::uint64_t first = 0, last = 0;
+      Node end = item;
+      end.text = trimmed(item.text.substr(0, dash));
+      read(end, each, first);
+      if (dash != string::npos) end.text = trimmed(item.text.substr(dash + 1));
+      read(end, each, last);
       if (first == 0 || last == 0) continue;  // already reported
       if (last < first || last - first >= ManifestLimits::runs - seeds.values.size()) {
         reject_value(item, "is not a range from a lower to a higher seed",
@@ -1110,51 +1110,53 @@ struct Reader {
     if (const Node* phases = in.find("phases")) checkpoints.at = phases->at;
   }
 
+  // Allows at most one of these keys in the map and, if `required`, exactly one.
+  void require_one(const Node& in, bool required, std::initializer_list<const char*> keys,
+                   const string& remedy) {
+    const Node* first = nullptr;
+    for (const char* key : keys) {
+      const Node* one = in.find(key);
+      if (one == nullptr) continue;
+      if (first != nullptr) {
+        return reject(*one, fmt::format("cannot be used with {}", first->key), "Give one of them.");
+      }
+      first = one;
+    }
+    reject_if(required && first == nullptr, &in, fmt::format("lacks {}", fmt::join(keys, " or ")),
+              remedy);
+  }
+
   void check(const Node& in, const Field& about, Start& start) {
-    static const std::map<string_view, Names> go_together = {
-        {"experiment", {"scale", "variant", "seed", "cycle", "noise_d"}},
-        {"checkpoint", {"seed", "noise_d"}},
-        {"file", {"unit"}}};
-    Names sources;
-    for (const auto& [source, others] : go_together) {
-      if (in.find(source) != nullptr) sources.push_back(source);
-    }
-    if (sources.size() != 1) {
-      return reject(in, "does not have exactly one of the keys experiment, checkpoint and file",
-                    remedy_of(about));
-    }
-    const Names& others = go_together.at(sources.front());
-    static const std::vector<Field> known = keys_of<Start>();
+    require_one(in, true, {"experiment", "checkpoint", "file"}, remedy_of(about));
+    static const std::map<string_view, Names> go_with = {
+        {"scale", {"experiment"}}, {"variant", {"experiment"}},
+        {"seed", {"experiment"}},  {"cycle", {"experiment"}},
+        {"unit", {"file"}},        {"noise_d", {"experiment", "checkpoint"}}};
     for (const Node& part : in.parts) {
-      if (part.key == sources.front() || std::ranges::count(others, part.key) > 0) continue;
-      if (find_named(known, part.key) == nullptr) continue;  // reported already
-      reject_key(part, fmt::format("cannot be used with {}", sources.front()),
-                 part.key == "noise_d" ? "Run a manifest with this file. Then start from that run: "
-                                         "`{experiment: NAME, seed: 1, noise_d: 1.0e-6}`."
-                                       : "Leave it out.");
+      const auto sources = go_with.find(part.key);
+      const auto is_given = [&](string_view key) { return in.find(key) != nullptr; };
+      if (sources == go_with.end() || std::ranges::any_of(sources->second, is_given)) continue;
+      reject_key(part, fmt::format("can only be used with {}", fmt::join(sources->second, " or ")),
+                 "Leave it out.");
     }
-    const Node *file = in.find("file"), *checkpoint = in.find("checkpoint");
-    if (file != nullptr && start.file.empty()) {
-      return reject_key(*file, "is not a path", "Write the path of a file.");
-    }
+    const Node* checkpoint = in.find("checkpoint");
     if (checkpoint == nullptr) return;
-    const string_view text = checkpoint->text;
-    const std::size_t at = std::min(text.find('@'), text.size());
-    start.run = text.substr(0, at);
+    const std::size_t at = checkpoint->text.find('@');
+    start.run = checkpoint->text.substr(0, at);
     const bool is_id = start.run.size() >= 8 && start.run.size() <= 64 &&
                        start.run.find_first_not_of("0123456789abcdef") == string::npos;
-    auto cycle =
-        read_value(*find_field("start_cycle"), text.substr(std::min(at + 1, text.size())), false);
-    if (!is_id || cycle.index() != 0) {
+    if (!is_id || at == string::npos) {
       return reject_value(*checkpoint, "is not a run id with a whole cycle",
                           "Write 8 or more digits of the id, @ and the cycle: `0123abcd@10`.");
     }
-    start.settings["start_cycle"] = {std::get<json>(std::move(cycle)), checkpoint->at};
+    Node cycle = *checkpoint;
+    cycle.text.erase(0, at + 1);
+    if (auto value = read_scalar(cycle, *find_field("start_cycle"))) {
+      start.settings["start_cycle"] = {std::move(*value), checkpoint->at};
+    }
   }
 
   void check(const Node& in, const Field&, const ValueRange& range) {
-    reject_if(range.from == range.to, &in, "begins and ends with the same value",
-              "List the value: [1].");
     reject_if(range.spacing == Spacing::log && std::min(range.from, range.to) <= 0, &in,
               "has logarithmic spacing, so both ends must be above 0", "Use `spacing: linear`.");
   }
@@ -1169,22 +1171,16 @@ struct Reader {
       plot.drawn = std::clamp<std::size_t>(y->parts.size(), 1, plot.also.size() + 1) - 1;
     }
     const Node *x = in.find("x"), *cycles = in.find("cycles"), *also = in.find("also");
-    if (plot.cycles && plot.cycles->at(1) < plot.cycles->at(0)) cycles = nullptr;  // reported
     const Measure* curve = find_measure(plot.y, MeasureKind::curve);
     const bool is_curve = curve != nullptr, of_run = is_of_run(plot.x);
     const string not_with_curve = "cannot be used with " + plot.y;
     reject_value_if(is_curve, x, not_with_curve,
                     fmt::format("Leave it out. The x axis of {} is {}.", plot.y,
                                 is_curve ? curve->x : string_view()));
-    reject_value_if(plot.y == plot.x, x, "is also the y of this plot", "Use another measure.");
-    const bool measured = is_measured_of_run(plot.y);
     reject_if(!plot.y.empty() && is_of_run(plot.y) && !of_run, &in,
-              fmt::format("{} {}", plot.y,
-                          measured ? "has one value for each run" : "contains no measure"),
-              measured ? "Use a parameter as x." : "Use a measure as y, such as phi.");
-    if (const Node* minus = in.find("minus"); minus != nullptr && is_curve) {
-      reject_key(*minus, not_with_curve, "Use a number as y, because curves cannot be subtracted.");
-    }
+              plot.y + " has one value for each run", "Use a parameter as x.");
+    reject_if(is_curve, in.find("minus"), not_with_curve,
+              "Use a number as y, because curves cannot be subtracted.");
     reject_value_if(plot.show == Show::rms && !is_curve && plot.x != "cycle" && !of_run,
                     in.find("show"), fmt::format("cannot be used with {} as x", plot.x),
                     "As x, use `cycle`, a parameter, or a measure with one value for each run.");
@@ -1206,8 +1202,10 @@ struct Reader {
     }
     if (const Node* series = in.find("series")) name_series(*series, plot);
     if (const Node* published = in.find("published")) {
-      for (std::size_t k = 0; k < plot.published.size(); ++k) {
-        check_published(published->parts[k], plot.published[k]);
+      for (const Node& one : published->parts) {
+        reject_if(one.find("label") == nullptr, &one, "lacks label",
+                  "Give the label that the legend of the plot shows.");
+        require_one(one, true, {"value", "points"}, "Give one of them.");
       }
     }
   }
@@ -1219,14 +1217,10 @@ struct Reader {
       if (!where.contains("")) continue;
       const Node& part = in.parts[k];
       const std::span drawn = std::span(plot.also).first(plot.drawn);
-      if (plot.column == part.key || std::ranges::count(drawn, part.key, &ColumnSpec::name) > 0) {
-        where = json::object();
-        plot.series[k].column = part.key;
-        continue;
-      }
       where = json::object();
-      if (plot.by.empty()) {
-        where[""] = part.key;
+      if (plot.column == part.key || std::ranges::count(drawn, part.key, &ColumnSpec::name) > 0) {
+        plot.series[k].column = part.key;
+      } else if (plot.by.empty()) {
         reject_key(part, "names no parameter",
                    "Write `\"KEY=VALUE\"`, set `by` to the parameter, or name a measure in `y`.");
       } else {
@@ -1240,92 +1234,46 @@ struct Reader {
     }
   }
 
-  void check_published(const Node& in, const PublishedSpec& published) {
-    reject_if(published.label.empty(), &in, "lacks label",
-              "Give the label that the legend of the plot shows.");
-    reject_if(published.value.has_value() == !published.points.empty(), &in,
-              "must have a value or points, but not both", "Give one of them.");
-  }
-
   void check(const Node& in, const Field& about, Placed<ClaimSpec>& claim) {
+    if (claim.compare.empty()) return;  // reported already
     const Node *published = in.find("published"), *reaches = in.find("reaches");
-    const Node *relative = in.find("relative_margin"), *against = in.find("against");
-    const std::size_t problems_before = problems.size();
-    Names lacks;
-    // Allows only one of these keys in a claim. If the claim has none of them, adds `lacking`, if
-    // it is not null, to `lacks`.
-    const auto require_one = [&](const char* lacking, std::initializer_list<const char*> keys) {
-      const Node* first = nullptr;
-      for (const char* key : keys) {
-        const Node* one = in.find(key);
-        if (one != nullptr && first != nullptr) {
-          return reject(*one, fmt::format("cannot be used with {}", first->key),
-                        "Give one of them.");
-        }
-        if (one != nullptr) first = one;
-      }
-      if (first == nullptr && lacking != nullptr) lacks.emplace_back(lacking);
-    };
-    require_one("id", {"id", "name"});
-    reject_if(lacks.empty() && !is_claim_id(claim.id), &in, "has no id",
-              "Write an id of letters, digits, -, _ and dots: `id: S2.phi`.");
+    const Node *relative = in.find("relative_margin"), *id = in.find("id");
+    const string example = remedy_of(about);
     const Estimator* named = find_named(all_estimators(), claim.estimator);
-    const bool of_all = named != nullptr && named->one_side;
-    require_one(of_all ? nullptr : "between", {"between", "published"});
+    const bool of_all = named != nullptr && named->one_side, of_run = is_of_run(claim.compare);
+    const bool is_bound = published != nullptr && claim.is != Relation::same;
+    const auto times = {"at_cycle", "cycles", "phi", "reaches"};
+    require_one(in, true, {"id", "name"}, example);
+    require_one(in, !of_all, {"between", "published"}, example);
+    require_one(in, !is_bound, {"margin", "relative_margin"}, example);
+    require_one(in, !of_run, times, example);
+    reject_value_if(!is_claim_id(claim.id), id != nullptr ? id : in.find("name"), "is not an id",
+                    "Write letters, digits, -, _ and dots: `id: S2.phi`.");
     if (named != nullptr) {
       const bool cycle = named == &all_estimators()[0] && in.find("at_cycle") != nullptr;
       reject_if(!named->key.empty() && in.find(named->key) == nullptr && !cycle, &in,
                 fmt::format("lacks {}", named->key),
                 fmt::format("`estimator: {}` needs this key.", named->name));
-      const bool compares_run = is_of_run(claim.compare);
-      const bool takes_run = named->of_run.value_or(compares_run);
-      reject_value_if(!claim.compare.empty() && compares_run != takes_run, in.find("estimator"),
+      const bool takes_run = named->of_run.value_or(of_run);
+      reject_value_if(of_run != takes_run, in.find("estimator"),
                       fmt::format("cannot be used with {}", claim.compare),
-                      takes_run
-                          ? "Compare a measure with one value for each run, such as onset_size_phi."
-                          : "Compare a measure with one value for each checkpoint, such as phi.");
+                      fmt::format("Compare a measure with one value for each {}.",
+                                  takes_run ? "run" : "checkpoint"));
     }
-    const bool is_bound = published != nullptr && claim.is != Relation::same;
-    require_one(is_bound ? nullptr : "margin", {"margin", "relative_margin"});
-    reject_if(!lacks.empty(), &in, fmt::format("lacks {}", fmt::join(lacks, ", ")),
-              remedy_of(about));
+    for (const char* key : times) {
+      reject_if(of_run, in.find(key), claim.compare + " has one value for each run",
+                "Leave it out.");
+    }
     reject_if(claim.published && !claim.published->value, published, "lacks value",
               "Give the published number as `value`.");
     reject_if(claim.where.contains("cycle"), in.find("where"), "selects checkpoints",
               "Use `at_cycle` or `cycles`.");
     reject_if(published == nullptr && !of_all, in.find("of"), "can only be used with published",
               "Use `between` for two variants.");
-    claim.relative = relative != nullptr;
-    const std::vector<string> of_against = names_in(claim.against);
-    reject_value_if(std::ranges::count(of_against, "cycle") > 0, against,
-                    "is the same for all runs, because it is taken at the first checkpoint",
-                    claim.estimator == "slope"
-                        ? "For a slope over cycles, write `estimator: slope_over_cycles` and "
-                          "`cycles: [1, 15]`, without `against`."
-                        : "Use a parameter or a measure, such as interior_grains.");
-    if (claim.compare.empty() || problems.size() > problems_before) return;
-    const auto times = {"at_cycle", "cycles", "phi", "reaches"};
-    const auto stated =
-        std::ranges::find_if(times, [&](const char* key) { return in.find(key) != nullptr; });
-    if (!is_of_run(claim.compare)) {
-      require_one(nullptr, times);
-      const string most = "`at_cycle: 10`, `cycles: [1, 15]`";
-      if (stated == times.end() && named == nullptr) {
-        reject(in, "lacks at_cycle, cycles, phi or reaches",
-               fmt::format("Write {}, `phi: [0.646, 0.67]` or `reaches: 20`.", most));
-      } else if (stated == times.end()) {
-        reject(in, "lacks at_cycle, cycles or phi",
-               fmt::format("`estimator: {}` needs one of these keys: {} or `phi: [0.646, 0.67]`.",
-                           claim.estimator, most));
-      }
-    } else if (stated != times.end()) {
-      reject(*in.find(*stated), fmt::format("{} has one value for each run", claim.compare),
-             "Leave it out.");
-    }
     reject_if(in.find("between") == nullptr, reaches, "can only be used with between",
               "A waiting time can only be compared with another waiting time.");
-    reject_if(compares_waits(claim), relative,
-              fmt::format("cannot be used with {}", reaches != nullptr ? "reaches" : claim.compare),
+    claim.relative = relative != nullptr;
+    reject_if(compares_waits(claim), relative, "cannot be used with waiting times",
               "Use `margin`.");
     reject_if(claim.published && claim.published->value == 0.0, relative,
               "cannot be used with a published value of 0", "Use `margin`.");
@@ -1374,11 +1322,7 @@ struct Reader {
                text.find_first_not_of("0123456789", name.size() + 1) == text.npos;
       });
       reject_value_if(clash != supplement.end(), own, "is the name of a figure of the supplement",
-                      is_stated && clash != supplement.end() && of == clash->name
-                          ? fmt::format("This manifest defines a figure with the name {}. Remove "
-                                        "the name from `figures`, or choose another name.",
-                                        of)
-                          : "Choose another name.");
+                      "Choose another name, or remove the figure from `figures`.");
       reject_value_if(clash == supplement.end() && (is_taken || is_panel), own,
                       "is the name of another plot or claim", "Choose another name.");
     }
