@@ -67,7 +67,7 @@ struct VariantCheck {
     check_cell();
     check_start();
     if (const string why = unfit_for_lammps(p, {}); !why.empty()) {
-      report("engine", why, "Leave `engine` out, or use a protocol that shears.");
+      report({"engine"}, why, "Leave `engine` out, or use a protocol that shears.");
     }
     if (!scale.checkpoints.phases.empty()) check_phases();
   }
@@ -88,27 +88,23 @@ struct VariantCheck {
     return nullptr;
   }
 
-  // Reports a problem with the value of `key`. The message gives the line of `key` or, if the value
-  // is a default, the line of `cause`.
-  void report(string_view key, const string& problem, const string& remedy,
-              string_view cause = "") {
+  // Reports a problem with the value of the first of `keys`. The message gives the line of the
+  // first of these keys that the manifest contains.
+  void report(std::initializer_list<string_view> keys, const string& problem,
+              const string& remedy) {
+    const string_view key = *keys.begin();
     const Setting* stated = find(key);
     const json value = stated != nullptr ? stated->value : find_field(key)->get(p);
-    const string text = value == "auto" ? "auto" : value.dump();
-    const Setting* blamed = stated == nullptr ? find(cause) : stated;
-    problems.add(blamed != nullptr ? blamed->at : manifest.base.at, string(key), problem,
-                 stated != nullptr ? text : "the default " + text, remedy);
+    Position at = manifest.base.at;
+    for (const string_view cause : keys | std::views::reverse) {
+      if (const Setting* found = find(cause)) at = found->at;
+    }
+    problems.add(at, string(key), problem,
+                 (stated != nullptr ? "" : "the default ") + value_text(value), remedy);
   }
 
   void refuse(const Position& at, const char* key, const string& problem, const string& remedy) {
     problems.add(at, key, problem, "", remedy);
-  }
-
-  // The last of `keys` that the manifest contains; "" if the manifest contains none of them.
-  string_view last_stated(std::initializer_list<string_view> keys) const {
-    string_view last;
-    for (const string_view key : keys) last = find(key) != nullptr ? key : last;
-    return last;
   }
 
   // Reports each number computed for `auto` that is out of range. Returns true if all are in range.
@@ -119,7 +115,7 @@ struct VariantCheck {
       const Field& field = *find_field(key);
       const json value = field.get(p);
       if (!check_value(field, value)) continue;
-      report(key, format("results in {}, which is out of range", value_text(value)),
+      report({key}, format("results in {}, which is out of range", value_text(value)),
              format("Write {}, or change stiffness_N_per_m, mass_kg or period_s.",
                     expected_values(field)));
       sound = false;
@@ -134,32 +130,27 @@ struct VariantCheck {
       return format("is over the stability limit 2/sqrt(8 k/m) = {:.4g} s", of);
     };
     if (p.protocol != ProtocolKind::stiffen && step >= limit) {
-      const double enough = std::floor(p.period_s / limit) + 1;
-      report("steps_per_cycle",
+      report({"steps_per_cycle", "period_s", "stiffness_N_per_m", "mass_kg"},
              format("the time step period_s/steps_per_cycle = {:.4g} s {}", step, over(limit)),
-             find_field("steps_per_cycle")->range.contains(enough)
-                 ? format("Use at least {:.0f} steps per cycle, or `auto`.", enough)
-                 : "Lower period_s or stiffness_N_per_m.",
-             last_stated({"mass_kg", "stiffness_N_per_m", "period_s"}));
+             format("Use at least {:.0f} steps per cycle, or `auto`.",
+                    std::floor(p.period_s / limit) + 1));
     }
     if (settle_step >= settle_limit) {
-      report("settle_time_step_s",
+      report({"settle_time_step_s", "settle.stiffness_N_per_m", "stiffness_N_per_m", "mass_kg"},
              format("the time step {:.4g} s {}", settle_step, over(settle_limit)),
-             format("Use less than {:.4g} s, or `auto`.", settle_limit),
-             last_stated({"mass_kg", "stiffness_N_per_m", "settle.stiffness_N_per_m"}));
+             format("Use less than {:.4g} s, or `auto`.", settle_limit));
     }
     const double seconds = std::max(p.settle_time_limit_s, kSettleCheckInterval);
     if (seconds / settle_step > kMostSteps) {
-      report("settle_time_step_s",
+      report({"settle_time_step_s"},
              format("settling may need {:.3g} time steps, but at most {:g} are allowed",
                     seconds / settle_step, kMostSteps),
-             format("Use at least {:.3g} s, or lower settle_time_limit_s.",
-                    1.001 * seconds / kMostSteps));
+             "Raise this value, or lower settle_time_limit_s.");
     }
     if (const double pause = pause_time_steps(p);
         p.protocol == ProtocolKind::paused && pause > kMostPauseSteps) {
-      const string_view key = last_stated({"steps_per_cycle", "period_s", "pause_s"});
-      report(key.empty() ? "pause_s" : key, format("the pause takes {:.3g} time steps", pause),
+      report({"pause_s", "period_s", "steps_per_cycle"},
+             format("the pause takes {:.3g} time steps", pause),
              format("Use a pause of at most {:g} time steps (period_s/steps_per_cycle).",
                     kMostPauseSteps));
     }
@@ -168,28 +159,24 @@ struct VariantCheck {
   void check_cell() {
     const Geometry shape = geometry(p);
     if (!is_wide_enough(p)) {
-      report("grains",
+      report({"grains"},
              format("with this number of grains the cell is {:.3g} d wide and deep, less than {} d",
                     cell_width(shape), kShallowestCell),
              advise_more_grains(p, is_wide_enough));
     }
     if (too_large(shape)) {
-      report(p.fill_packing_fraction < 0.1 * p.nominal_packing_fraction
-                 ? "fill_packing_fraction"
-                 : "nominal_packing_fraction",
+      report({"fill_packing_fraction", "nominal_packing_fraction"},
              format("the cell for the loose grains would be {:.3g} d wide and {:.3g} d high and "
                     "have {:.2g} wall grains, which is too large for {} grains",
                     cell_width(shape), fill_height(shape), wall_grain_count(shape), p.grains),
-             "Raise it.");
+             "Raise this value, or nominal_packing_fraction.");
     }
-    if (p.fill_packing_fraction < p.nominal_packing_fraction) return;
-    const bool loose_stated = find("fill_packing_fraction") != nullptr;
-    report(loose_stated ? "fill_packing_fraction" : "nominal_packing_fraction",
-           "the random initial packing must be looser than the settled packing",
-           loose_stated ? format("Choose a value below nominal_packing_fraction ({}).",
-                                 p.nominal_packing_fraction)
-                        : format("Choose a value above fill_packing_fraction ({}).",
-                                 p.fill_packing_fraction));
+    if (p.fill_packing_fraction >= p.nominal_packing_fraction) {
+      report({"fill_packing_fraction", "nominal_packing_fraction"},
+             "the random initial packing must be looser than the settled packing",
+             format("Choose a value below nominal_packing_fraction ({}).",
+                    p.nominal_packing_fraction));
+    }
   }
 
   void check_start() {
@@ -198,7 +185,7 @@ struct VariantCheck {
       for (const char* key : {"start_seed", "start_cycle", "start_noise_d"}) {
         const Field& field = *find_field(key);
         if (field.get(p) == field.get({})) continue;
-        report(key, "has no effect without start",
+        report({key}, "has no effect without start",
                "Add `start: {experiment: NAME}`, or remove this key.");
       }
       return;
@@ -242,53 +229,41 @@ bool is_formula(string_view text) {
   return std::ranges::any_of(begins, [&](string_view one) { return text.starts_with(one); });
 }
 
-/// Checks that each label belongs to a variant of at least one scale and has visible characters,
-/// and that no two variants of one scale have names that look the same.
-void check_labels(const Manifest& manifest, const std::vector<Scale>& scales,
-                  ProblemList& problems) {
-  const auto reject = [&](const VariantLabel& label, const string& problem, const string& got,
-                          const string& remedy) {
-    problems.add(label.at, "labels", problem, got, remedy);
+/// Checks that each label and statement can be seen and is no formula, that each label belongs to a
+/// variant of at least one scale, and that no two variants of one scale have the same name.
+void check_texts(const Manifest& manifest, const std::vector<Scale>& scales,
+                 ProblemList& problems) {
+  const auto check = [&](Position at, const char* key, const string& text) {
+    if (!as_seen(text).empty() && !is_formula(text)) return;
+    problems.add(at, key, "is a text that nobody sees, or that spreadsheets read as a formula",
+                 format("\"{}\"", printable(text)), "Begin it with a letter or a digit.");
   };
-  for (const VariantLabel& label : manifest.labels) {
-    const bool empty = as_seen(label.name).empty();
-    if (!empty && !is_formula(label.name)) continue;
-    reject(label,
-           format("gives a variant a name {}",
-                  empty ? "without visible characters" : "that spreadsheets read as a formula"),
-           format("\"{}\"", printable(label.name)),
-           empty ? "Write a name with visible characters." : "Begin it with a letter or a digit.");
+  for (const VariantLabel& label : manifest.labels) check(label.at, "labels", label.name);
+  for (const Placed<ClaimSpec>& claim : manifest.claims) {
+    if (!claim.statement.empty()) check(claim.at, "claims.statement", claim.statement);
   }
-  std::set<const VariantLabel*> used;
+  std::set<Position> used;
   for (const Scale& scale : scales) {
     const std::vector<json> variants = swept_in(variants_of(scale));
     const auto names = variant_names(variants, manifest.labels);
-    // Key: as_seen(name). Value: the name, and the label that gives it (null if no label does).
-    std::map<string, std::pair<string, const VariantLabel*>> named;
+    std::map<string, json> named;  // variants by as_seen(name)
     for (const json& variant : variants) {
       const string& name = names.at(variant);
-      const VariantLabel* label = nullptr;
-      for (const VariantLabel& one : manifest.labels) {
-        if (!selects(one, variant)) continue;
-        used.insert(&one);
-        label = &one;
+      const auto [earlier, first] = named.try_emplace(as_seen(name), variant);
+      for (const VariantLabel& label : manifest.labels) {
+        const bool fits = selects(label, variant);
+        if (fits) used.insert(label.at);
+        if (first || !(fits || selects(label, earlier->second))) continue;
+        problems.add(label.at, "labels", "gives two variants the same name", printable(name),
+                     "Give each variant a different name.");
+        break;
       }
-      const auto [earlier, first] = named.try_emplace(as_seen(name), name, label);
-      const auto& [other, label_of_other] = earlier->second;
-      if (label == nullptr) label = label_of_other;
-      if (first || label == nullptr) continue;
-      return reject(*label,
-                    other == name
-                        ? format("gives two variants the same name, '{}'", printable(name))
-                        : format("gives two variants names that look the same, '{}' and '{}'",
-                                 printable(other), printable(name)),
-                    printable(label->name), "Give each variant a different name.");
     }
   }
   for (const VariantLabel& label : manifest.labels) {
-    if (used.contains(&label)) continue;
-    reject(label, "matches no variant of any scale", words_of(label.where),
-           "Write swept keys, each with one of its values, such as `\"fluid=still\"`.");
+    if (used.contains(label.at)) continue;
+    problems.add(label.at, "labels", "matches no variant of any scale", words_of(label.where),
+                 "Write swept keys, each with one of its values, such as `\"fluid=still\"`.");
   }
 }
 
@@ -343,16 +318,11 @@ std::vector<string> advice_on(const Variant& variant, bool settles) {
   // Density of a grain [kg/m^3]. All known solids are within the limits of the next line.
   const double density = 6 / std::numbers::pi * p.mass_kg / std::pow(p.diameter_m, 3);
   if (density < 0.1 || density > 1e5) {
-    const bool in_mm = density * 1e9 > 100 && density * 1e9 < 3e4;
-    advice.push_back(format(
-        "grains of {:g} m and {:g} kg have a density of {:.2g} kg/m^3. {}", p.diameter_m, p.mass_kg,
-        density,
-        in_mm ? format("If the diameter is in mm, write `diameter_m: {:g}`.", p.diameter_m / 1000)
-              : "Check the units of diameter_m [m] and mass_kg [kg]."));
+    advice.push_back(
+        format("grains of {:g} m and {:g} kg have a density of {:.2g} kg/m^3. Check the units of "
+               "diameter_m [m] and mass_kg [kg].",
+               p.diameter_m, p.mass_kg, density));
   }
-  const auto when = [](double seconds) {
-    return seconds < 1e6 ? format("only after about {:.2g} s", seconds) : "too late";
-  };
   if (!pressure_lifts_column(p)) {
     advice.push_back(
         format("the pressure of {} Pa cannot lift the grains above the moving bottom wall (N = "
@@ -372,24 +342,16 @@ std::vector<string> advice_on(const Variant& variant, bool settles) {
                "max_overlap_diameters ({:g}). Raise stiffness_N_per_m, or lower pressure_Pa.",
                overlap, p.max_overlap_diameters));
   }
-  if (settles && packing.drag_kg_per_s == 0) {
-    advice.push_back(
-        format("without drag the grains do not come to rest, so settling fails at "
-               "settle_time_limit_s ({:g} s). Use a drag_kg_per_s above 0.",
-               p.settle_time_limit_s));
-  } else if (const double time = damping_time_s(packing); settles && time > p.settle_time_limit_s) {
-    advice.push_back(
-        format("with a drag of {:g} kg/s the grains come to rest {}, so settling fails at "
-               "settle_time_limit_s ({:g} s). Raise the drag or the limit.",
-               packing.drag_kg_per_s, when(time), p.settle_time_limit_s));
-  }
-  if (const double time = pressing_time_s(packing); settles && time > p.settle_time_limit_s) {
-    advice.push_back(
-        format("with drag_kg_per_s {:g} and wall_drag_grains_per_d2_s {:g} the moving wall presses "
-               "the grains together {}, so settling fails at settle_time_limit_s ({:g} s). Lower "
-               "the drag, or raise pressure_Pa or settle_time_limit_s.",
-               packing.drag_kg_per_s, packing.wall_drag_grains_per_d2_s, when(time),
-               p.settle_time_limit_s));
+  for (const auto& [seconds, what] :
+       {std::pair(damping_time_s(packing), "the grains come to rest"),
+        {pressing_time_s(packing), "the moving wall presses the grains together"}}) {
+    if (!settles || seconds <= p.settle_time_limit_s) continue;
+    advice.push_back(format(
+        "with drag_kg_per_s {:g} and wall_drag_grains_per_d2_s {:g} {} {}, so settling fails at "
+        "settle_time_limit_s ({:g} s). Change the drag, pressure_Pa or the limit.",
+        packing.drag_kg_per_s, packing.wall_drag_grains_per_d2_s, what,
+        seconds < 1e6 ? format("only after about {:.2g} s", seconds) : "too late",
+        p.settle_time_limit_s));
   }
   for (const auto& [step, key, is_used] :
        {std::tuple(time_step(p, shear_time_step_s(p)), "steps_per_cycle",
@@ -833,12 +795,7 @@ void check_variants(const Manifest& manifest) {
     }
     runs += variants * seeds;
   }
-  if (!manifest.labels.empty()) check_labels(manifest, scales, problems);
-  for (const Placed<ClaimSpec>& claim : manifest.claims) {
-    if (!is_formula(claim.statement)) continue;
-    problems.add(claim.at, "claims.statement", "is a text that spreadsheets read as a formula",
-                 printable(claim.statement), "Begin it with a letter or a digit.");
-  }
+  check_texts(manifest, scales, problems);
   for (const Scale& scale : scales) {
     std::set<json> known;
     for (const Variant& variant : variants_of(scale)) {
