@@ -397,99 +397,65 @@ struct ScaleRuns {
   std::vector<FrameRun> runs = {};
 };
 
-/// A value in the column may also need an earlier checkpoint. Returns how many cycles earlier.
-std::uint64_t cycles_back(const string& column) {
-  std::uint64_t most = 0;
-  for (const string& name : providers_of({&column, 1})) {
-    most = std::max(most, provider(name).cycles_back);
-  }
-  return most;
-}
-
-/// For example "a checkpoint at cycle 3 and another checkpoint 1 cycle earlier".
-string words_of_checkpoint(const string& where, std::uint64_t back) {
-  return format(
-      "a checkpoint{}{}", where,
-      back == 0 ? "" : format(" and another checkpoint {} earlier", counted(back, "cycle")));
-}
-
-// Whether the run will have a checkpoint at a cycle from `first` to `end`, and another checkpoint
-// `back` cycles earlier. `wanted`: null, or a cycle, a list or a range that the cycle must match.
-// Tries the first cycle, the first multiple of `every_cycles`, and the last cycle. If the first
-// multiple does not fit, no later multiple fits.
-bool has_checkpoint(const FrameRun& run, std::uint64_t first, std::uint64_t end, std::uint64_t back,
-                    const json& wanted = nullptr) {
-  if (wanted.is_array()) {
-    return std::ranges::any_of(
-        wanted, [&](const json& one) { return has_checkpoint(run, first, end, back, one); });
-  }
-  const auto limit = [&](const char* key, std::uint64_t without) {
-    const json stated = wanted.is_object() ? member_of(wanted, key) : wanted;
-    return stated.is_number() ? stated.get<std::uint64_t>() : without;
-  };
-  first = std::max(first, limit("min", first));
-  end = std::min(end, limit("max", end));
+/// Whether the run will have a checkpoint at one of the cycles that `wanted` selects (null: any),
+/// and another checkpoint `back` cycles earlier.
+bool has_checkpoint(const FrameRun& run, const std::array<std::uint64_t, 2>& cycles,
+                    std::uint64_t back, const json& wanted) {
   const std::uint64_t every = run.ask.checkpoint_every, last = run.ask.target_cycles;
-  const std::uint64_t begin = std::max(first, back);
-  const auto has = [&](std::uint64_t c) { return c <= last && (c % every == 0 || c == last); };
-  for (const std::uint64_t cycle : {begin, (begin + every - 1) / every * every, last}) {
-    if (begin <= cycle && cycle <= end && has(cycle) && has(cycle - back)) return true;
+  const auto has = [&](std::uint64_t cycle) { return cycle % every == 0 || cycle == last; };
+  for (std::uint64_t cycle = std::max(cycles[0], back); cycle <= std::min(cycles[1], last);
+       ++cycle) {
+    if (!has(cycle) || !has(cycle - back)) continue;
+    if (wanted.is_null() || is_within(static_cast<double>(cycle), wanted)) return true;
   }
   return false;
+}
+
+/// Why none of the runs will have a value of the column at these cycles; "" if one may have a
+/// value.
+string lack_of(const string& column, const std::array<std::uint64_t, 2>& cycles, RunGroup runs,
+               const json& wanted = nullptr) {
+  std::uint64_t back = 0;  // a value may also need an earlier checkpoint
+  for (const string& name : providers_of({&column, 1})) {
+    back = std::max(back, provider(name).cycles_back);
+  }
+  const bool any = std::ranges::any_of(
+      runs, [&](const FrameRun* run) { return has_checkpoint(*run, cycles, back, wanted); });
+  if (any) return "";
+  return format(
+      "runs lack a checkpoint {}{}{}, so {} has no value. Record more checkpoints (`every_cycles`) "
+      "or more cycles.",
+      cycles[0] == cycles[1] ? format("at cycle {}", cycles[0])
+                             : format("in cycles {} to {}", cycles[0], cycles[1]),
+      wanted.is_null() ? "" : " with " + words_of({{"cycle", wanted}}),
+      back == 0 ? "" : format(" and another checkpoint {} earlier", counted(back, "cycle")),
+      column);
 }
 
 /// Why no run will have a value for the plot; "" if some run may have one.
 string lack_of(const PlotSpec& plot, const Scale& scale, RunGroup runs) {
   const auto [shortest, longest] = std::ranges::minmax(
       std::views::transform(runs, [](const FrameRun* run) { return run->ask.target_cycles; }));
-  std::array<std::uint64_t, 2> cycles = {0, longest};
   const json wanted = member_of(plot.where, "cycle");
-  string where;
-  if (plot.cycles) {
-    cycles = *plot.cycles;
-    where = format(" in cycles {} to {}", cycles[0], cycles[1]);
-  } else if (!draws_every_cycle(plot) && !is_of_run(plot.y)) {
+  std::array<std::uint64_t, 2> cycles = plot.cycles.value_or(std::array{std::uint64_t{0}, longest});
+  if (!plot.cycles && !draws_every_cycle(plot) && !is_of_run(plot.y)) {
     if (!plot.cycle && scale.until.until) return "";  // `until` decides the last cycle
     cycles[1] = plot.cycle.value_or(shortest);
     // Without `at_cycle`, the plot draws the last cycle that `where` selects.
-    if (plot.cycle || wanted.is_null()) {
-      cycles[0] = cycles[1];
-      where = format(" at cycle {}", cycles[0]);
-    }
+    if (plot.cycle || wanted.is_null()) cycles[0] = cycles[1];
   }
-  if (cycles[1] > longest) {
-    return format("it needs cycle {}, but the last cycle of the runs is {}.", cycles[1], longest);
-  }
-  for (const string& measure : {plot.y, plot.x}) {
-    const std::uint64_t back = cycles_back(measure);
-    const bool any = std::ranges::any_of(runs, [&](const FrameRun* run) {
-      return has_checkpoint(*run, cycles[0], cycles[1], back, wanted);
-    });
-    if (any) continue;
-    if (!wanted.is_null()) where += " with " + words_of({{"cycle", wanted}});
-    return format(
-        "no run has {}, so {} has no value. Record more checkpoints (`every_cycles`) or more "
-        "cycles.",
-        words_of_checkpoint(where, back), measure);
-  }
-  return "";
+  const string lack = lack_of(plot.y, cycles, runs, wanted);
+  return lack.empty() ? lack_of(plot.x, cycles, runs, wanted) : lack;
 }
 
-/// Why a run will have no value for the claim; "" if the run may have one.
-string lack_of(const ClaimSpec& claim, const FrameRun& run) {
+/// Why a run will have no value for the claim, which needs all its cycles; "" if it may have one.
+string lack_of(const ClaimSpec& claim, const FrameRun* run) {
   if (!claim.cycles) return "";
   const auto [first, last] = *claim.cycles;
-  const std::uint64_t back = cycles_back(claim.compare);
-  if (last > run.ask.target_cycles) {
-    return format("it needs cycle {}, but the last cycle of the runs is {}.", last,
-                  run.ask.target_cycles);
-  }
   // If the first, second and last cycle have checkpoints, all cycles of the range have them.
   for (const std::uint64_t cycle : {first, std::min(first + 1, last), last}) {
-    if (has_checkpoint(run, cycle, cycle, back)) continue;
-    return format(
-        "it needs {}, which the runs do not have. Record more checkpoints (`every_cycles`).",
-        words_of_checkpoint(format(" at cycle {}", cycle), back));
+    string lack = lack_of(claim.compare, {cycle, cycle}, {&run, 1});
+    if (!lack.empty()) return lack;
   }
   return "";
 }
@@ -501,10 +467,9 @@ string lack_of_partner(const PlotSpec& plot, const PlotRuns& selection) {
   std::vector<string> alone;
   for (const FrameRun* run : selection.alone) alone.push_back(run->place.variant);
   return format(
-      "{} {} other packings than {}, so the plot omits {}. Under `settle`, set the parameters "
-      "that all packings must share.",
-      some_of(alone, 8), alone.size() == 1 ? "has" : "have", words_of(plot.minus),
-      alone.size() == 1 ? "this variant" : "these variants");
+      "the plot omits {}, because {} has other packings. Under `settle`, set the parameters that "
+      "all packings must share.",
+      some_of(alone, 8), words_of(plot.minus));
 }
 
 /// Number of curves of the plot that the entry of `series` matches.
@@ -534,21 +499,14 @@ string unused_cycle(const PlotSpec& plot) {
 
 std::vector<string> problems_of(const PlotSpec& plot, const ScaleRuns& here,
                                 std::span<const ScaleRuns> all) {
-  const Scale& scale = here.scale;
   const PlotRuns selection = selected_by(plot, here.runs);
   const std::vector<const FrameRun*> runs = selection.runs();
   std::vector<string> found = {problem_of_minus(plot, count_variants(selection.subtracted)),
                                lack_of_partner(plot, selection)};
   if (runs.empty()) {
-    json where = plot.where;
-    where.erase("cycle");
-    const bool any = !runs_with(where, here.runs).empty();
-    if (selection.alone.empty() && found[0].empty()) {
-      found.push_back(
-          any ? format("only {} is selected, and `minus` subtracts it, so nothing is drawn. Change "
-                       "`where` or `minus`.",
-                       words_of(plot.minus))
-              : format("{}, so nothing is drawn. Change `where`.", variants_have(0, where)));
+    if (found[0].empty() && found[1].empty()) {
+      found.push_back(format("no run is left{}, so nothing is drawn. Change `where` or `minus`.",
+                             plot.where.empty() ? "" : " with " + words_of(plot.where)));
     }
     return found;
   }
@@ -558,33 +516,25 @@ std::vector<string> problems_of(const PlotSpec& plot, const ScaleRuns& here,
                "each variant.",
                key));
   }
-  const bool phases = !scale.checkpoints.phases.empty();
-  if (plot.x == "shear_strain" && (!plot.cycles || !phases)) {
-    found.push_back(format("shear_strain is 0 at whole cycles. Set {}.",
-                           plot.cycles ? "`phases` of `checkpoints`"
-                           : phases    ? "`cycles`"
-                                       : "`cycles`, and `phases` of `checkpoints`"));
+  if (plot.x == "shear_strain" && (!plot.cycles || here.scale.checkpoints.phases.empty())) {
+    found.push_back(
+        "shear_strain is 0 at whole cycles. Set `cycles`, and `phases` of `checkpoints`.");
   }
   for (const SeriesSpec& one : plot.series) {
-    if (plot.listed) break;  // checked only in the manifest that defines the plot
-    if (!one.column.empty()) continue;
+    // A listed plot is checked only in the manifest that defines it.
+    if (plot.listed || !one.column.empty()) continue;
     const std::size_t curves = curves_of(one, plot, runs);
-    if (curves > 1) {
-      found.push_back(format(
-          "the style for {} matches {} curves, but a style is for one curve. Add keys that choose "
-          "one curve.",
-          words_of(one.where), curves));
-    } else if (curves == 0 && std::ranges::none_of(all, [&](const ScaleRuns& other) {
-                 return curves_of(one, plot, selected_by(plot, other.runs).runs()) > 0;
-               })) {
-      found.push_back(
-          format("the style for {} matches no curve at any scale. Use only values of curves that "
-                 "the plot draws.",
-                 words_of(one.where)));
-    }
+    const auto is_drawn = [&](const ScaleRuns& other) {
+      return curves_of(one, plot, selected_by(plot, other.runs).runs()) > 0;
+    };
+    if (curves == 1 || (curves == 0 && std::ranges::any_of(all, is_drawn))) continue;
+    found.push_back(
+        format("the style for {} matches {} curves, but a style is for one curve. Choose values of "
+               "one curve that the plot draws.",
+               words_of(one.where), curves));
   }
   found.push_back(unused_cycle(plot));
-  found.push_back(lack_of(plot, scale, runs));
+  found.push_back(lack_of(plot, here.scale, runs));
   return found;
 }
 
@@ -599,7 +549,7 @@ ClaimProblems problems_of(const ClaimSpec& claim, const ScaleRuns& here) {
   ClaimProblems found = {problems_of_sides(claim, sides, true), {}};
   for (const auto& side : sides.runs) {
     for (const FrameRun* run : side) {
-      string lack = lack_of(claim, *run);
+      string lack = lack_of(claim, run);
       if (!lack.empty() && found.lacks.empty()) found.lacks.push_back(std::move(lack));
     }
   }
@@ -648,47 +598,41 @@ std::set<string> ids_of_claims(const Manifest& manifest, std::span<const FrameRu
   return ids;
 }
 
-/// The remedy if an entry of `primary` is none of these ids.
-string advise_ids(const std::set<string>& ids) {
-  return ids.empty() ? "Remove it, because the manifest has no claims."
-                     : format("Write one of the ids: {}.", some_of(ids, 20));
-}
-
-/// Reports each entry of `primary` that is the id of no claim at the scales that have the entry.
-/// The values of `for_each` are not checked if they do not follow from this manifest: in claims of
-/// computed figures, and in claims over the runs of other experiments (`of`).
+/// Reports each entry of `primary` that is the id of no claim at any scale. The values of
+/// `for_each` are not checked if they do not follow from this manifest: in claims of computed
+/// figures, and in claims over the runs of other experiments (`of`).
 void check_primary(const Manifest& manifest, const std::vector<Scale>& scales,
                    ProblemList& problems) {
-  std::map<Position, std::set<string>> known;  // by entry
+  std::set<string> ids, unchecked;
   for (const Scale& scale : scales) {
     if (scale.primary.empty()) continue;
-    const std::set<string> ids =
-        ids_of_claims(manifest, planned_runs(manifest, scale, variants_of(scale)));
-    for (const PrimaryClaim& claim : scale.primary) {
-      known[claim.at].insert(ids.begin(), ids.end());
-    }
+    ids.merge(ids_of_claims(manifest, planned_runs(manifest, scale, variants_of(scale))));
   }
-  std::set<string> unchecked;
   if (!manifest.of.empty()) {
     for (const ClaimSpec& claim : manifest.claims) unchecked.insert(claim.id);
   }
   for (const Figure& figure : all_figures()) {
     const bool listed = std::ranges::count(manifest.figures, figure.name) > 0 &&
                         find_named(computed_figures(), figure.name) != nullptr;
-    if (!listed && figure.of.empty()) continue;
-    unchecked.insert(figure.claims.begin(), figure.claims.end());
+    if (listed || !figure.of.empty()) {
+      unchecked.insert(figure.claims.begin(), figure.claims.end());
+    }
   }
   const auto without_value = [](const string& id) { return id.substr(0, id.find('@')); };
   for (const Scale& scale : scales) {
     for (const auto& [id, at] : scale.primary) {
-      const std::set<string>& ids = known.at(at);
-      if (id.find(' ') != string::npos) continue;  // a statement, from older manifests
       if (ids.contains(id) || unchecked.contains(without_value(id))) continue;
       if (std::ranges::count(ids, id, without_value) > 0) continue;
-      problems.add(
-          at, scale.own.contains("primary") ? format("scales.{}.primary", scale.name) : "primary",
-          "is not the id of a claim", printable(id), advise_ids(ids));
+      problems.add(at, "primary", "is not the id of a claim", printable(id),
+                   format("The claims are: {}.", ids.empty() ? "none" : some_of(ids, 20)));
     }
+  }
+}
+
+void add_warnings(const string& what, const std::vector<string>& problems,
+                  std::vector<string>& warnings) {
+  for (const string& problem : problems) {
+    if (!problem.empty()) warnings.push_back(format("{}: {}", what, problem));
   }
 }
 
@@ -709,40 +653,24 @@ void warn_of_figures(const Manifest& manifest, const ScaleRuns& here,
   for (const Scale& one : scales) {
     all.push_back({one, one.seeds.values.size(), planned_runs(manifest, one, variants_of(one))});
   }
-  const auto warn_of = [&](const string& what, const std::vector<string>& problems) {
-    for (const string& problem : problems) {
-      if (!problem.empty()) warnings.push_back(format("{}: {}", what, problem));
-    }
-  };
   for (const auto& [place, plot] : stated_in(manifest, &Manifest::plots)) {
-    warn_of(format("{}: plot {}", place, plot->name), problems_of(*plot, here, all));
+    add_warnings(format("{}: plot {}", place, plot->name), problems_of(*plot, here, all), warnings);
   }
-  std::map<string, string> said;  // ids of claims, by statement
   for (const auto& [place, stated_claim] : stated_in(manifest, &Manifest::claims)) {
     for (const ClaimSpec& claim : each_of(*stated_claim, here.runs)) {
-      said.emplace(stated(claim, sides_of(claim, here.runs).names).text, claim.id);
       const ClaimProblems found = problems_of(claim, here);
       // A shipped claim (ClaimSpec::listed) may select values that no run of this experiment has.
       if (claim.listed && !found.refusals.empty()) continue;
-      warn_of(format("{}: claim {}", place, claim.id), found.refusals);
+      const string what = format("{}: claim {}", place, claim.id);
+      add_warnings(what, found.refusals, warnings);
       // Small scales are for trials, so warn only if no other scale can decide the claim.
       const bool decided = std::ranges::any_of(all, [&](const ScaleRuns& other) {
         if (found.lacks.empty() || other.scale.name == here.scale.name) return false;
         const ClaimProblems there = problems_of(claim, other);
         return there.refusals.empty() && there.lacks.empty();
       });
-      if (!decided) warn_of(format("{}: claim {}", place, claim.id), found.lacks);
+      if (!decided) add_warnings(what, found.lacks, warnings);
     }
-  }
-  for (const auto& [primary, at] : here.scale.primary) {
-    if (primary.find(' ') == string::npos) continue;  // an id, which check_primary() has checked
-    const auto found = said.find(primary);
-    warnings.push_back(
-        found != said.end()
-            ? format("{}: primary: '{}' is the statement of a claim. Write its id, {}.",
-                     manifest.file, primary, found->second)
-            : format("{}: primary: no claim has the statement '{}'. {}", manifest.file, primary,
-                     advise_ids(ids_of_claims(manifest, here.runs))));
   }
 }
 
@@ -813,19 +741,12 @@ void check_variants(const Manifest& manifest) {
 
 std::vector<string> warnings_of(const Manifest& manifest) {
   std::vector<string> warnings;
-  const auto check = [&](const auto& place, const string& name,
-                         const std::vector<string>& problems) {
-    for (const string& problem : problems) {
-      if (problem.empty()) continue;
-      warnings.push_back(
-          format("{}:{}:{}: {}: {}", manifest.file, place.at.line, place.at.column, name, problem));
-    }
-  };
-  for (const Placed<PlotSpec>& plot : manifest.plots) {
-    check(plot, "plot " + plot.name, {unused_cycle(plot)});
+  for (const auto& [place, plot] : stated_in(manifest, &Manifest::plots)) {
+    add_warnings(format("{}: plot {}", place, plot->name), {unused_cycle(*plot)}, warnings);
   }
-  for (const Placed<ClaimSpec>& claim : manifest.claims) {
-    check(claim, "claim " + claim.id, problems_of_sides(claim, {}, false));
+  for (const auto& [place, claim] : stated_in(manifest, &Manifest::claims)) {
+    add_warnings(format("{}: claim {}", place, claim->id), problems_of_sides(*claim, {}, false),
+                 warnings);
   }
   return warnings;
 }
