@@ -702,18 +702,13 @@ void check_variants(const Manifest& manifest) {
     }
     const std::uint64_t variants = variant_count(scale.sweep);
     const std::uint64_t seeds = scale.seeds.values.size();
-    if (!scale.looks.empty() && scale.looks.back() > seeds) {
-      problems.add(scale.seeds.at, path.empty() ? "looks" : path + ".looks",
-                   "needs more seeds than the scale has", std::to_string(scale.looks.back()),
-                   format("Write `seeds: {}`, or list this many seeds.", scale.looks.back()));
-    }
-    const SweepAxis* numbers = find_axis(scale.sweep, "seeds");
-    for (const Setting& number :
-         numbers == nullptr ? std::span<const Setting>() : numbers->values) {
-      if (number.value.get<std::uint64_t>() <= seeds) continue;
-      problems.add(number.at, path + ".sweep.zip.seeds",
-                   "is more than the number of seeds of the scale", number.value.dump(),
-                   format("Write `seeds: {}`, or list this many seeds.", number.value.dump()));
+    std::vector<Setting> needed;  // numbers of seeds
+    if (const SweepAxis* axis = find_axis(scale.sweep, "seeds")) needed = axis->values;
+    if (!scale.looks.empty()) needed.push_back({scale.looks.back(), scale.seeds.at});
+    for (const auto& [number, at] : needed) {
+      if (number <= seeds) continue;
+      problems.add(at, "seeds", "are fewer than `looks` or the sweep needs", number.dump(),
+                   format("Write `seeds: {}`, or list this many seeds.", number.dump()));
     }
     if (variants > ManifestLimits::runs || variants * seeds > ManifestLimits::runs - runs) {
       problems.add(scale.at, path.empty() ? "sweep" : path,

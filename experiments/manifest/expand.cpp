@@ -26,25 +26,14 @@
 namespace shearcell {
 namespace {
 
-constexpr std::string_view kDefaultScale = "desk";
-
 Scale choose_scale(const Manifest& manifest, const std::optional<std::string>& wanted) {
-  if (manifest.scales.empty()) {
-    if (!wanted || *wanted == "base") return manifest.base;
-    refuse(manifest.file, {}, "scale", "the manifest has no scales", printable(*wanted),
-           "Leave it out.");
-  }
-  const std::string name = wanted.value_or(std::string(kDefaultScale));
+  if (manifest.scales.empty() && wanted.value_or("base") == "base") return manifest.base;
+  const std::string name = wanted.value_or("desk");
   if (const Scale* found = find_named(manifest.scales, name)) return *found;
   const std::vector<std::string_view> names = names_of(manifest.scales);
-  const std::string known = fmt::format("The manifest has {}.", fmt::join(names, ", "));
-  if (!wanted) {
-    refuse(manifest.file, {}, "scale",
-           fmt::format("there is no scale {}, which is the default", name), "",
-           fmt::format("Name a scale with --scale. {}", known));
-  }
   refuse(manifest.file, {}, "scale", with_nearest("is unknown", name, names), printable(name),
-         known);
+         fmt::format("The manifest has {}; --scale selects one of them.",
+                     names.empty() ? "no scales" : fmt::format("{}", fmt::join(names, ", "))));
 }
 
 // Checks a value from the command line that replaces a value of the manifest.
@@ -237,13 +226,11 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
                                           manifest.file, same, run.place.variant));
     }
   }
-  if (const std::string* missing = wanted.unfound()) {
-    refuse(manifest.file, {}, "variant", "no variant has these values", printable(*missing),
-           fmt::format("The variants are {}.", fmt::join(wanted.seen(), "; ")));
-  }
-  if (plan.runs.empty()) {
-    refuse(manifest.file, {}, "variant", "no variant has all of these values",
-           printable(fmt::format("{}", fmt::join(options.variants, " and "))),
+  const std::string* missing = wanted.unfound();
+  if (missing != nullptr || plan.runs.empty()) {
+    refuse(manifest.file, {}, "variant", "no variant has these values",
+           printable(missing != nullptr ? *missing
+                                        : fmt::format("{}", fmt::join(options.variants, " and "))),
            fmt::format("The variants are {}.", fmt::join(wanted.seen(), "; ")));
   }
   std::vector<nlohmann::json> swept;
