@@ -38,22 +38,6 @@ using nlohmann::json;
 using std::string;
 using std::string_view;
 
-bool is_wide_enough(const Parameters& p) {
-  return cell_width(geometry(p)) >= kShallowestCell;
-}
-
-/// Returns "Use at least N grains." with the smallest N for which `enough` is true, or "Use more
-/// grains." if this N is beyond the range of `grains`. `enough` must be true for all larger N.
-string advise_more_grains(Parameters p, bool (*enough)(const Parameters&)) {
-  const auto most = static_cast<std::uint64_t>(find_field("grains")->range.max);
-  std::uint64_t few = p.grains, many = most + 1;
-  while (many - few > 1) {
-    p.grains = few + (many - few) / 2;
-    (enough(p) ? many : few) = p.grains;
-  }
-  return many > most ? "Use more grains." : format("Use at least {} grains.", many);
-}
-
 struct VariantCheck {
   const Manifest& manifest;
   const Scale& scale;
@@ -66,8 +50,8 @@ struct VariantCheck {
     check_time_steps();
     check_cell();
     check_start();
-    if (const string why = unfit_for_lammps(p, {}); !why.empty()) {
-      report({"engine"}, why, "Leave `engine` out, or use a protocol that shears.");
+    if (const string why = unfit_for_lammps(p, scale.checkpoints); !why.empty()) {
+      report({"engine"}, why, "Leave `engine` out, or what LAMMPS cannot do.");
     }
     if (!scale.checkpoints.phases.empty()) check_phases();
   }
@@ -158,11 +142,11 @@ struct VariantCheck {
 
   void check_cell() {
     const Geometry shape = geometry(p);
-    if (!is_wide_enough(p)) {
+    if (cell_width(shape) < kShallowestCell) {
       report({"grains"},
              format("with this number of grains the cell is {:.3g} d wide and deep, less than {} d",
                     cell_width(shape), kShallowestCell),
-             advise_more_grains(p, is_wide_enough));
+             "Use more grains.");
     }
     if (too_large(shape)) {
       report({"fill_packing_fraction", "nominal_packing_fraction"},
@@ -209,8 +193,6 @@ struct VariantCheck {
     constexpr const char* key = "checkpoints.phases";
     if (p.protocol == ProtocolKind::stiffen) {
       refuse(at, key, "protocol stiffen has no cycles", "Remove this key.");
-    } else if (const string why = unfit_for_lammps(p, scale.checkpoints); !why.empty()) {
-      refuse(at, key, why, "Leave out the phases, or the key `engine`.");
     } else if (steps_at(phases, motion).size() != phases.size()) {
       refuse(at, key,
              format("two phases fall on one time step, or a phase falls on the end of the cycle, "
@@ -235,7 +217,7 @@ void check_texts(const Manifest& manifest, const std::vector<Scale>& scales,
                  ProblemList& problems) {
   const auto check = [&](Position at, const char* key, const string& text) {
     if (!as_seen(text).empty() && !is_formula(text)) return;
-    problems.add(at, key, "is a text that nobody sees, or that spreadsheets read as a formula",
+    problems.add(at, key, "has no visible characters, or is a formula for spreadsheets",
                  format("\"{}\"", printable(text)), "Begin it with a letter or a digit.");
   };
   for (const VariantLabel& label : manifest.labels) check(label.at, "labels", label.name);
@@ -256,7 +238,6 @@ void check_texts(const Manifest& manifest, const std::vector<Scale>& scales,
         if (first || !(fits || selects(label, earlier->second))) continue;
         problems.add(label.at, "labels", "gives two variants the same name", printable(name),
                      "Give each variant a different name.");
-        break;
       }
     }
   }
@@ -333,8 +314,9 @@ std::vector<string> advice_on(const Variant& variant, bool settles) {
   if (!has_interior(p)) {
     advice.push_back(
         format("the cell of {} grains is too small to have interior grains, which are at least 1.5 "
-               "d from the walls. So phi and other measures of interior grains have no value. {}",
-               p.grains, advise_more_grains(p, has_interior)));
+               "d from the walls. So phi and other measures of interior grains have no value. Use "
+               "more grains.",
+               p.grains));
   }
   if (const double overlap = expected_overlap(p); overlap > p.max_overlap_diameters) {
     advice.push_back(
@@ -702,6 +684,10 @@ void check_variants(const Manifest& manifest) {
     }
     const std::uint64_t variants = variant_count(scale.sweep);
     const std::uint64_t seeds = scale.seeds.values.size();
+    if (std::ranges::adjacent_find(scale.looks, std::greater_equal()) != scale.looks.end()) {
+      problems.add(scale.at, "looks", "are not ascending numbers of seeds", "",
+                   "Sort the numbers.");
+    }
     std::vector<Setting> needed;  // numbers of seeds
     if (const SweepAxis* axis = find_axis(scale.sweep, "seeds")) needed = axis->values;
     if (!scale.looks.empty()) needed.push_back({scale.looks.back(), scale.seeds.at});

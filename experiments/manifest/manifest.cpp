@@ -59,8 +59,7 @@ void refuse(std::string_view file, Position at, const std::string& key, const st
 
 void ProblemList::add(Position at, const std::string& key, const std::string& problem,
                       const std::string& got, const std::string& remedy) {
-  const std::string text = problem_text(file_, at, key, problem, got, remedy);
-  if (known_.insert(text).second) problems_.emplace(at, text);
+  problems_.emplace(at, problem_text(file_, at, key, problem, got, remedy));
 }
 
 void ProblemList::raise() const {

@@ -67,8 +67,7 @@ class ProblemList {
 
  private:
   std::string file_;
-  std::multimap<Position, std::string> problems_;
-  std::set<std::string> known_;
+  std::set<std::pair<Position, std::string>> problems_;
 };
 
 /// Throws a ManifestError with the problem_text() of these arguments.

@@ -813,33 +813,18 @@ struct Reader {
   template <class T>
   void read(const Node& in, const Field& about, std::vector<T>& values) {
     values.clear();  // a scale begins with the values of the top level
-    Field item = about;
-    item.example = about.example.substr(1, about.example.size() - 2);  // without the brackets
+    Field item = with_type<T>(about);
+    // Without the brackets; a number has no example.
+    item.example = item.example.substr(1, std::is_arithmetic_v<T> ? 0 : item.example.size() - 2);
     for (const Node& each : items_of(in, about.example)) read(each, item, values.emplace_back());
   }
 
-  // Reads the styles of curves. name_series() decides later what a key without `=` means.
+  // Reads the styles of curves. name_series() reads their keys.
   void read(const Node& in, const Field& about, std::vector<SeriesSpec>& series) {
     if (!in.is_map()) return reject_type(in, "a map", remedy_of(about));
     for (const Node& part : in.parts) {
-      SeriesSpec& one = series.emplace_back();
-      read(part, {.example = "{label: a name, colour: blue, marker: circle}"}, one);
-      one.where = part.key.find('=') == string::npos ? json{{"", part.key}} : read_selector(part);
-    }
-  }
-
-  void read(const Node& in, const Field& about, std::vector<std::vector<double>>& points) {
-    for (const Node& item : items_of(in, about.example)) {
-      const std::size_t problems_before = problems.size();
-      std::vector<double> point;
-      for (const Node& number : items_of(item, "[0.05, 0.646]")) {
-        read(number, {.range = about.range}, point.emplace_back());
-      }
-      const bool fits = point.size() == 2 || point.size() == 3;
-      if (!fits && problems.size() == problems_before) {
-        reject(item, "is not a point", "It takes [x, y], or [x, y, error].");
-      }
-      points.push_back(std::move(point));
+      read(part, {.example = "{label: a name, colour: blue, marker: circle}"},
+           series.emplace_back());
     }
   }
 
@@ -857,27 +842,6 @@ struct Reader {
     }
     if (!in.is_map()) return reject_type(in, "a map", remedy_of(about));
     for (const Node& part : in.parts) read_where(part, where);
-  }
-
-  // Reads ascending numbers: numbers of seeds (`looks`), or phases of a cycle.
-  template <class T>
-  requires(std::is_arithmetic_v<T>) void read(const Node& in, const Field& about,
-                                              std::vector<T>& numbers) {
-    numbers.clear();
-    constexpr bool phases = !std::is_integral_v<T>;
-    for (const Node& item : items_of(in, about.example)) {
-      const auto read = read_scalar(item, with_type<T>({.range = about.range}));
-      if (!read) continue;
-      const T number = read->template get<T>();
-      if (phases && !(number > 0 && number < 1)) {
-        reject_value(item, "is not within a cycle", "Write fractions p of a cycle, 0 < p < 1.");
-      } else if (!numbers.empty() && number <= numbers.back()) {
-        reject_value(item, "is not greater than the value before it",
-                     "List the values in ascending order, each once.");
-      } else {
-        numbers.push_back(number);
-      }
-    }
   }
 
   void read(const Node& in, const Field& about, std::vector<string>& names) {
@@ -1107,7 +1071,15 @@ struct Reader {
   }
 
   void check(const Node& in, const Field&, Checkpoints& checkpoints) {
-    if (const Node* phases = in.find("phases")) checkpoints.at = phases->at;
+    const Node* phases = in.find("phases");
+    if (phases == nullptr) return;
+    checkpoints.at = phases->at;
+    double last = 0;
+    for (const double phase : checkpoints.phases) {
+      reject_if(phase <= last || phase >= 1, phases, "are not ascending fractions of a cycle",
+                "Write numbers p, 0 < p < 1.");
+      last = phase;
+    }
   }
 
   // Allows at most one of these keys in the map and, if `required`, exactly one.
@@ -1206,19 +1178,24 @@ struct Reader {
         reject_if(one.find("label") == nullptr, &one, "lacks label",
                   "Give the label that the legend of the plot shows.");
         require_one(one, true, {"value", "points"}, "Give one of them.");
+        for (const Node& point : values_of(one.find("points"))) {
+          reject_if(point.parts.size() < 2 || point.parts.size() > 3, &point, "is not a point",
+                    "It takes [x, y], or [x, y, error].");
+        }
       }
     }
   }
 
-  // Finds what a key of `series` without `=` means: the name of a column, or a value of `by`.
+  // Reads the keys of `series`. A key without `=` is the name of a column, or a value of `by`.
   void name_series(const Node& in, Placed<PlotSpec>& plot) {
+    const std::span drawn = std::span(plot.also).first(plot.drawn);
     for (std::size_t k = 0; k < plot.series.size(); ++k) {
-      json& where = plot.series[k].where;
-      if (!where.contains("")) continue;
       const Node& part = in.parts[k];
-      const std::span drawn = std::span(plot.also).first(plot.drawn);
-      where = json::object();
-      if (plot.column == part.key || std::ranges::count(drawn, part.key, &ColumnSpec::name) > 0) {
+      json& where = plot.series[k].where = json::object();
+      if (part.key.find('=') != string::npos) {
+        where = read_selector(part);
+      } else if (plot.column == part.key ||
+                 std::ranges::count(drawn, part.key, &ColumnSpec::name) > 0) {
         plot.series[k].column = part.key;
       } else if (plot.by.empty()) {
         reject_key(part, "names no parameter",

@@ -253,8 +253,8 @@ std::variant<json, ValueProblem> read_value(const Field& field, string_view text
     const std::optional<double> real = quoted ? std::nullopt : parse_real(text);
     if (!real) {
       return not_a_number(field, takes(field) +
-                                     " Write only digits and a decimal point, without quotes, "
-                                     "separators or a unit.");
+                                     " Write the number alone, with a decimal point, without "
+                                     "quotes, separators or a unit.");
     }
     if (text.size() > 1 && text[0] == '0' && std::isdigit(text[1]) != 0) {
       return ValueProblem{"begins with a zero",
