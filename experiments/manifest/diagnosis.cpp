@@ -498,10 +498,6 @@ std::vector<string> problems_of(const PlotSpec& plot, const ScaleRuns& here,
                "each variant.",
                key));
   }
-  if (plot.x == "shear_strain" && (!plot.cycles || here.scale.checkpoints.phases.empty())) {
-    found.push_back(
-        "shear_strain is 0 at whole cycles. Set `cycles`, and `phases` of `checkpoints`.");
-  }
   for (const SeriesSpec& one : plot.series) {
     // A listed plot is checked only in the manifest that defines it.
     if (plot.listed || !one.column.empty()) continue;
@@ -566,20 +562,6 @@ std::vector<std::pair<string, const Placed<Spec>*>> stated_in(
   return found;
 }
 
-/// The ids of the claims of the manifest and of its figures. A claim with `for_each` has one id for
-/// each value in the runs.
-std::set<string> ids_of_claims(const Manifest& manifest, std::span<const FrameRun> runs) {
-  std::set<string> ids;
-  for (const auto& [place, claim] : stated_in(manifest, &Manifest::claims)) {
-    for (const ClaimSpec& one : each_of(*claim, runs)) ids.insert(one.id);
-  }
-  for (const Figure& figure : computed_figures()) {
-    const bool listed = std::ranges::count(manifest.figures, figure.name) > 0;
-    if (listed) ids.insert(figure.claims.begin(), figure.claims.end());
-  }
-  return ids;
-}
-
 /// Reports each entry of `primary` that is the id of no claim at any scale. The values of
 /// `for_each` are not checked if they do not follow from this manifest: in claims of computed
 /// figures, and in claims over the runs of other experiments (`of`).
@@ -588,14 +570,16 @@ void check_primary(const Manifest& manifest, const std::vector<Scale>& scales,
   std::set<string> ids, unchecked;
   for (const Scale& scale : scales) {
     if (scale.primary.empty()) continue;
-    ids.merge(ids_of_claims(manifest, planned_runs(manifest, scale, variants_of(scale))));
-  }
-  if (!manifest.of.empty()) {
-    for (const ClaimSpec& claim : manifest.claims) unchecked.insert(claim.id);
+    const std::vector<FrameRun> runs = planned_runs(manifest, scale, variants_of(scale));
+    for (const auto& [place, claim] : stated_in(manifest, &Manifest::claims)) {
+      for (const ClaimSpec& one : each_of(*claim, runs)) ids.insert(one.id);
+      if (!manifest.of.empty()) unchecked.insert(claim->id);
+    }
   }
   for (const Figure& figure : all_figures()) {
     const bool listed = std::ranges::count(manifest.figures, figure.name) > 0 &&
                         find_named(computed_figures(), figure.name) != nullptr;
+    if (listed) ids.insert(figure.claims.begin(), figure.claims.end());
     if (listed || !figure.of.empty()) {
       unchecked.insert(figure.claims.begin(), figure.claims.end());
     }

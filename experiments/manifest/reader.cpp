@@ -497,10 +497,6 @@ bool is_rgb(const Node& in) {
          text.find_first_not_of("0123456789abcdefABCDEF", 1) == text.npos;
 }
 
-bool is_auto(const Field& field, const Node& node) {
-  return takes_auto(field.name) && node.is_scalar() && node.text == "auto";
-}
-
 // Reads the values of keys into the members of structs. After a problem, reading continues, so that
 // all problems are reported at once.
 struct Reader {
@@ -577,12 +573,7 @@ struct Reader {
   // Reads a number or a choice. Returns nothing if the type or range is wrong.
   std::optional<json> read_scalar(const Node& in, const Field& about) {
     if (!in.is_scalar()) {
-      const bool varies = about.get != nullptr && in.kind != Node::Kind::null;  // a parameter
-      reject_type(in, "a single value",
-                  varies ? fmt::format("To vary it, write `sweep: {{{}{}: [VALUES]}}}}`.",
-                                       is_length(about.name) ? "zip: {KEY: [VALUES], " : "grid: {",
-                                       about.name)
-                         : remedy_of(about));
+      reject_type(in, "a single value", remedy_of(about) + " `sweep` varies parameters.");
       return std::nullopt;
     }
     auto read = read_value(about, in.text, in.quoted);
@@ -649,8 +640,7 @@ struct Reader {
       return reject_unknown(in, parameters());
     }
     if (where.contains(in.key)) return reject_key(in, "appears twice", "Write it once.");
-    Field field = other != nullptr ? *other : *parameter;
-    field.get = nullptr;  // a remedy must not suggest a sweep
+    const Field& field = other != nullptr ? *other : *parameter;
     if (in.kind == Node::Kind::list) {
       json& any = where[in.key] = json::array();
       for (const Node& item : items_of(in, "[1, 2]")) {
@@ -837,10 +827,7 @@ struct Reader {
     }
     // "base" is the variant of an experiment without a sweep.
     if (about.name == "variant" && in.is_scalar() && in.text == "base") return;
-    if (in.is_scalar()) {
-      return reject_type(in, "a map of swept values", remedy_of(about));
-    }
-    if (!in.is_map()) return reject_type(in, "a map", remedy_of(about));
+    if (!in.is_map()) return reject_type(in, "a map of swept values", remedy_of(about));
     for (const Node& part : in.parts) read_where(part, where);
   }
 
@@ -878,7 +865,7 @@ struct Reader {
   bool read_parameter(const Node& in, Settings& settings) {
     const Field* field = find_field(in.key);
     if (field == nullptr) return false;
-    if (is_auto(*field, in)) {
+    if (takes_auto(field->name) && in.text == "auto") {
       settings[in.key] = {in.text, in.at};
     } else if (auto value = read_scalar(in, *field)) {
       settings[in.key] = {std::move(*value), in.at};
@@ -1034,9 +1021,7 @@ struct Reader {
   void read(const Node& in, const Field& about, T& value) {
     value = {};
     if constexpr (requires { value.at; }) value.at = in.at;
-    if (!in.is_map()) {
-      return reject_type(in, "a map", remedy_of(about));
-    }
+    if (!in.is_map()) return reject_type(in, "a map", remedy_of(about));
     read_keys(in, value);
     for (const Field& key : keys_of<T>()) {
       if (!key.required || in.find(key.name) != nullptr) continue;
@@ -1298,10 +1283,9 @@ struct Reader {
         return text.starts_with(string(name) + "_") &&
                text.find_first_not_of("0123456789", name.size() + 1) == text.npos;
       });
-      reject_value_if(clash != supplement.end(), own, "is the name of a figure of the supplement",
+      reject_value_if(clash != supplement.end() || is_taken || is_panel, own,
+                      "is the name of another figure, plot or claim",
                       "Choose another name, or remove the figure from `figures`.");
-      reject_value_if(clash == supplement.end() && (is_taken || is_panel), own,
-                      "is the name of another plot or claim", "Choose another name.");
     }
   }
 };
