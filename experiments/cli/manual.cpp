@@ -73,7 +73,7 @@ can also be used in `until`. `critical_size` and all columns below it need `--pe
   for (const TableColumn& column : table_columns()) {
     const bool plots = find_measure(column.name) != nullptr ||
                        find_measure(column.name, MeasureKind::run) != nullptr;
-    const char* until = why_not_until(column.name).empty() ? ", until" : "";
+    const char* until = can_be_until(column.name) ? ", until" : "";
     text += fmt::format("| `{}` | {}{} | {} |\n", column.name, plots ? "plot" : "", until,
                         cell(column.meaning));
   }

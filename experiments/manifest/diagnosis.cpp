@@ -38,22 +38,6 @@ using nlohmann::json;
 using std::string;
 using std::string_view;
 
-bool is_wide_enough(const Parameters& p) {
-  return cell_width(geometry(p)) >= kShallowestCell;
-}
-
-/// Returns "Use at least N grains." with the smallest N for which `enough` is true, or "Use more
-/// grains." if this N is beyond the range of `grains`. `enough` must be true for all larger N.
-string advise_more_grains(Parameters p, bool (*enough)(const Parameters&)) {
-  const auto most = static_cast<std::uint64_t>(find_field("grains")->range.max);
-  std::uint64_t few = p.grains, many = most + 1;
-  while (many - few > 1) {
-    p.grains = few + (many - few) / 2;
-    (enough(p) ? many : few) = p.grains;
-  }
-  return many > most ? "Use more grains." : format("Use at least {} grains.", many);
-}
-
 struct VariantCheck {
   const Manifest& manifest;
   const Scale& scale;
@@ -66,8 +50,8 @@ struct VariantCheck {
     check_time_steps();
     check_cell();
     check_start();
-    if (const string why = unfit_for_lammps(p, {}); !why.empty()) {
-      report("engine", why, "Leave `engine` out, or use a protocol that shears.");
+    if (const string why = unfit_for_lammps(p, scale.checkpoints); !why.empty()) {
+      report({"engine"}, why, "Leave `engine` out, or what LAMMPS cannot do.");
     }
     if (!scale.checkpoints.phases.empty()) check_phases();
   }
@@ -88,27 +72,23 @@ struct VariantCheck {
     return nullptr;
   }
 
-  // Reports a problem with the value of `key`. The message gives the line of `key` or, if the value
-  // is a default, the line of `cause`.
-  void report(string_view key, const string& problem, const string& remedy,
-              string_view cause = "") {
+  // Reports a problem with the value of the first of `keys`. The message gives the line of the
+  // first of these keys that the manifest contains.
+  void report(std::initializer_list<string_view> keys, const string& problem,
+              const string& remedy) {
+    const string_view key = *keys.begin();
     const Setting* stated = find(key);
     const json value = stated != nullptr ? stated->value : find_field(key)->get(p);
-    const string text = value == "auto" ? "auto" : value.dump();
-    const Setting* blamed = stated == nullptr ? find(cause) : stated;
-    problems.add(blamed != nullptr ? blamed->at : manifest.base.at, string(key), problem,
-                 stated != nullptr ? text : "the default " + text, remedy);
+    Position at = manifest.base.at;
+    for (const string_view cause : keys | std::views::reverse) {
+      if (const Setting* found = find(cause)) at = found->at;
+    }
+    problems.add(at, string(key), problem,
+                 (stated != nullptr ? "" : "the default ") + value_text(value), remedy);
   }
 
   void refuse(const Position& at, const char* key, const string& problem, const string& remedy) {
     problems.add(at, key, problem, "", remedy);
-  }
-
-  // The last of `keys` that the manifest contains; "" if the manifest contains none of them.
-  string_view last_stated(std::initializer_list<string_view> keys) const {
-    string_view last;
-    for (const string_view key : keys) last = find(key) != nullptr ? key : last;
-    return last;
   }
 
   // Reports each number computed for `auto` that is out of range. Returns true if all are in range.
@@ -119,7 +99,7 @@ struct VariantCheck {
       const Field& field = *find_field(key);
       const json value = field.get(p);
       if (!check_value(field, value)) continue;
-      report(key, format("results in {}, which is out of range", value_text(value)),
+      report({key}, format("results in {}, which is out of range", value_text(value)),
              format("Write {}, or change stiffness_N_per_m, mass_kg or period_s.",
                     expected_values(field)));
       sound = false;
@@ -134,32 +114,27 @@ struct VariantCheck {
       return format("is over the stability limit 2/sqrt(8 k/m) = {:.4g} s", of);
     };
     if (p.protocol != ProtocolKind::stiffen && step >= limit) {
-      const double enough = std::floor(p.period_s / limit) + 1;
-      report("steps_per_cycle",
+      report({"steps_per_cycle", "period_s", "stiffness_N_per_m", "mass_kg"},
              format("the time step period_s/steps_per_cycle = {:.4g} s {}", step, over(limit)),
-             find_field("steps_per_cycle")->range.contains(enough)
-                 ? format("Use at least {:.0f} steps per cycle, or `auto`.", enough)
-                 : "Lower period_s or stiffness_N_per_m.",
-             last_stated({"mass_kg", "stiffness_N_per_m", "period_s"}));
+             format("Use at least {:.0f} steps per cycle, or `auto`.",
+                    std::floor(p.period_s / limit) + 1));
     }
     if (settle_step >= settle_limit) {
-      report("settle_time_step_s",
+      report({"settle_time_step_s", "settle.stiffness_N_per_m", "stiffness_N_per_m", "mass_kg"},
              format("the time step {:.4g} s {}", settle_step, over(settle_limit)),
-             format("Use less than {:.4g} s, or `auto`.", settle_limit),
-             last_stated({"mass_kg", "stiffness_N_per_m", "settle.stiffness_N_per_m"}));
+             format("Use less than {:.4g} s, or `auto`.", settle_limit));
     }
     const double seconds = std::max(p.settle_time_limit_s, kSettleCheckInterval);
     if (seconds / settle_step > kMostSteps) {
-      report("settle_time_step_s",
+      report({"settle_time_step_s"},
              format("settling may need {:.3g} time steps, but at most {:g} are allowed",
                     seconds / settle_step, kMostSteps),
-             format("Use at least {:.3g} s, or lower settle_time_limit_s.",
-                    1.001 * seconds / kMostSteps));
+             "Raise this value, or lower settle_time_limit_s.");
     }
     if (const double pause = pause_time_steps(p);
         p.protocol == ProtocolKind::paused && pause > kMostPauseSteps) {
-      const string_view key = last_stated({"steps_per_cycle", "period_s", "pause_s"});
-      report(key.empty() ? "pause_s" : key, format("the pause takes {:.3g} time steps", pause),
+      report({"pause_s", "period_s", "steps_per_cycle"},
+             format("the pause takes {:.3g} time steps", pause),
              format("Use a pause of at most {:g} time steps (period_s/steps_per_cycle).",
                     kMostPauseSteps));
     }
@@ -167,29 +142,25 @@ struct VariantCheck {
 
   void check_cell() {
     const Geometry shape = geometry(p);
-    if (!is_wide_enough(p)) {
-      report("grains",
+    if (cell_width(shape) < kShallowestCell) {
+      report({"grains"},
              format("with this number of grains the cell is {:.3g} d wide and deep, less than {} d",
                     cell_width(shape), kShallowestCell),
-             advise_more_grains(p, is_wide_enough));
+             "Use more grains.");
     }
     if (too_large(shape)) {
-      report(p.fill_packing_fraction < 0.1 * p.nominal_packing_fraction
-                 ? "fill_packing_fraction"
-                 : "nominal_packing_fraction",
+      report({"fill_packing_fraction", "nominal_packing_fraction"},
              format("the cell for the loose grains would be {:.3g} d wide and {:.3g} d high and "
                     "have {:.2g} wall grains, which is too large for {} grains",
                     cell_width(shape), fill_height(shape), wall_grain_count(shape), p.grains),
-             "Raise it.");
+             "Raise this value, or nominal_packing_fraction.");
     }
-    if (p.fill_packing_fraction < p.nominal_packing_fraction) return;
-    const bool loose_stated = find("fill_packing_fraction") != nullptr;
-    report(loose_stated ? "fill_packing_fraction" : "nominal_packing_fraction",
-           "the random initial packing must be looser than the settled packing",
-           loose_stated ? format("Choose a value below nominal_packing_fraction ({}).",
-                                 p.nominal_packing_fraction)
-                        : format("Choose a value above fill_packing_fraction ({}).",
-                                 p.fill_packing_fraction));
+    if (p.fill_packing_fraction >= p.nominal_packing_fraction) {
+      report({"fill_packing_fraction", "nominal_packing_fraction"},
+             "the random initial packing must be looser than the settled packing",
+             format("Choose a value below nominal_packing_fraction ({}).",
+                    p.nominal_packing_fraction));
+    }
   }
 
   void check_start() {
@@ -198,7 +169,7 @@ struct VariantCheck {
       for (const char* key : {"start_seed", "start_cycle", "start_noise_d"}) {
         const Field& field = *find_field(key);
         if (field.get(p) == field.get({})) continue;
-        report(key, "has no effect without start",
+        report({key}, "has no effect without start",
                "Add `start: {experiment: NAME}`, or remove this key.");
       }
       return;
@@ -209,9 +180,6 @@ struct VariantCheck {
     }
     if (start.run.empty() && find("start_seed") == nullptr) {
       refuse(start.at, "start", "lacks seed", "Give the seed of the recorded run: `seed: 3`.");
-    }
-    if (!start.run.empty() && find("start_seed") != nullptr) {
-      report("start_seed", "cannot be used with checkpoint, which has one seed", "Leave it out.");
     }
     if (scale.settle_at.line > 0) {
       refuse(scale.settle_at, "settle", "has no effect with start, because nothing settles",
@@ -225,8 +193,6 @@ struct VariantCheck {
     constexpr const char* key = "checkpoints.phases";
     if (p.protocol == ProtocolKind::stiffen) {
       refuse(at, key, "protocol stiffen has no cycles", "Remove this key.");
-    } else if (const string why = unfit_for_lammps(p, scale.checkpoints); !why.empty()) {
-      refuse(at, key, why, "Leave out the phases, or the key `engine`.");
     } else if (steps_at(phases, motion).size() != phases.size()) {
       refuse(at, key,
              format("two phases fall on one time step, or a phase falls on the end of the cycle, "
@@ -245,53 +211,40 @@ bool is_formula(string_view text) {
   return std::ranges::any_of(begins, [&](string_view one) { return text.starts_with(one); });
 }
 
-/// Checks that each label belongs to a variant of at least one scale and has visible characters,
-/// and that no two variants of one scale have names that look the same.
-void check_labels(const Manifest& manifest, const std::vector<Scale>& scales,
-                  ProblemList& problems) {
-  const auto reject = [&](const VariantLabel& label, const string& problem, const string& got,
-                          const string& remedy) {
-    problems.add(label.at, "labels", problem, got, remedy);
+/// Checks that each label and statement can be seen and is no formula, that each label belongs to a
+/// variant of at least one scale, and that no two variants of one scale have the same name.
+void check_texts(const Manifest& manifest, const std::vector<Scale>& scales,
+                 ProblemList& problems) {
+  const auto check = [&](Position at, const char* key, const string& text) {
+    if (!as_seen(text).empty() && !is_formula(text)) return;
+    problems.add(at, key, "has no visible characters, or is a formula for spreadsheets",
+                 format("\"{}\"", printable(text)), "Begin it with a letter or a digit.");
   };
-  for (const VariantLabel& label : manifest.labels) {
-    const bool empty = as_seen(label.name).empty();
-    if (!empty && !is_formula(label.name)) continue;
-    reject(label,
-           format("gives a variant a name {}",
-                  empty ? "without visible characters" : "that spreadsheets read as a formula"),
-           format("\"{}\"", printable(label.name)),
-           empty ? "Write a name with visible characters." : "Begin it with a letter or a digit.");
+  for (const VariantLabel& label : manifest.labels) check(label.at, "labels", label.name);
+  for (const Placed<ClaimSpec>& claim : manifest.claims) {
+    if (!claim.statement.empty()) check(claim.at, "claims.statement", claim.statement);
   }
-  std::set<const VariantLabel*> used;
+  std::set<Position> used;
   for (const Scale& scale : scales) {
     const std::vector<json> variants = swept_in(variants_of(scale));
     const auto names = variant_names(variants, manifest.labels);
-    // Key: as_seen(name). Value: the name, and the label that gives it (null if no label does).
-    std::map<string, std::pair<string, const VariantLabel*>> named;
+    std::map<string, json> named;  // variants by as_seen(name)
     for (const json& variant : variants) {
       const string& name = names.at(variant);
-      const VariantLabel* label = nullptr;
-      for (const VariantLabel& one : manifest.labels) {
-        if (!selects(one, variant)) continue;
-        used.insert(&one);
-        label = &one;
+      const auto [earlier, first] = named.try_emplace(as_seen(name), variant);
+      for (const VariantLabel& label : manifest.labels) {
+        const bool fits = selects(label, variant);
+        if (fits) used.insert(label.at);
+        if (first || !(fits || selects(label, earlier->second))) continue;
+        problems.add(label.at, "labels", "gives two variants the same name", printable(name),
+                     "Give each variant a different name.");
       }
-      const auto [earlier, first] = named.try_emplace(as_seen(name), name, label);
-      const auto& [other, label_of_other] = earlier->second;
-      if (label == nullptr) label = label_of_other;
-      if (first || label == nullptr) continue;
-      return reject(*label,
-                    other == name
-                        ? format("gives two variants the same name, '{}'", printable(name))
-                        : format("gives two variants names that look the same, '{}' and '{}'",
-                                 printable(other), printable(name)),
-                    printable(label->name), "Give each variant a different name.");
     }
   }
   for (const VariantLabel& label : manifest.labels) {
-    if (used.contains(&label)) continue;
-    reject(label, "matches no variant of any scale", words_of(label.where),
-           "Write swept keys, each with one of its values, such as `\"fluid=still\"`.");
+    if (used.contains(label.at)) continue;
+    problems.add(label.at, "labels", "matches no variant of any scale", words_of(label.where),
+                 "Write swept keys, each with one of its values, such as `\"fluid=still\"`.");
   }
 }
 
@@ -346,16 +299,11 @@ std::vector<string> advice_on(const Variant& variant, bool settles) {
   // Density of a grain [kg/m^3]. All known solids are within the limits of the next line.
   const double density = 6 / std::numbers::pi * p.mass_kg / std::pow(p.diameter_m, 3);
   if (density < 0.1 || density > 1e5) {
-    const bool in_mm = density * 1e9 > 100 && density * 1e9 < 3e4;
-    advice.push_back(format(
-        "grains of {:g} m and {:g} kg have a density of {:.2g} kg/m^3. {}", p.diameter_m, p.mass_kg,
-        density,
-        in_mm ? format("If the diameter is in mm, write `diameter_m: {:g}`.", p.diameter_m / 1000)
-              : "Check the units of diameter_m [m] and mass_kg [kg]."));
+    advice.push_back(
+        format("grains of {:g} m and {:g} kg have a density of {:.2g} kg/m^3. Check the units of "
+               "diameter_m [m] and mass_kg [kg].",
+               p.diameter_m, p.mass_kg, density));
   }
-  const auto when = [](double seconds) {
-    return seconds < 1e6 ? format("only after about {:.2g} s", seconds) : "too late";
-  };
   if (!pressure_lifts_column(p)) {
     advice.push_back(
         format("the pressure of {} Pa cannot lift the grains above the moving bottom wall (N = "
@@ -366,8 +314,9 @@ std::vector<string> advice_on(const Variant& variant, bool settles) {
   if (!has_interior(p)) {
     advice.push_back(
         format("the cell of {} grains is too small to have interior grains, which are at least 1.5 "
-               "d from the walls. So phi and other measures of interior grains have no value. {}",
-               p.grains, advise_more_grains(p, has_interior)));
+               "d from the walls. So phi and other measures of interior grains have no value. Use "
+               "more grains.",
+               p.grains));
   }
   if (const double overlap = expected_overlap(p); overlap > p.max_overlap_diameters) {
     advice.push_back(
@@ -375,24 +324,16 @@ std::vector<string> advice_on(const Variant& variant, bool settles) {
                "max_overlap_diameters ({:g}). Raise stiffness_N_per_m, or lower pressure_Pa.",
                overlap, p.max_overlap_diameters));
   }
-  if (settles && packing.drag_kg_per_s == 0) {
-    advice.push_back(
-        format("without drag the grains do not come to rest, so settling fails at "
-               "settle_time_limit_s ({:g} s). Use a drag_kg_per_s above 0.",
-               p.settle_time_limit_s));
-  } else if (const double time = damping_time_s(packing); settles && time > p.settle_time_limit_s) {
-    advice.push_back(
-        format("with a drag of {:g} kg/s the grains come to rest {}, so settling fails at "
-               "settle_time_limit_s ({:g} s). Raise the drag or the limit.",
-               packing.drag_kg_per_s, when(time), p.settle_time_limit_s));
-  }
-  if (const double time = pressing_time_s(packing); settles && time > p.settle_time_limit_s) {
-    advice.push_back(
-        format("with drag_kg_per_s {:g} and wall_drag_grains_per_d2_s {:g} the moving wall presses "
-               "the grains together {}, so settling fails at settle_time_limit_s ({:g} s). Lower "
-               "the drag, or raise pressure_Pa or settle_time_limit_s.",
-               packing.drag_kg_per_s, packing.wall_drag_grains_per_d2_s, when(time),
-               p.settle_time_limit_s));
+  for (const auto& [seconds, what] :
+       {std::pair(damping_time_s(packing), "the grains come to rest"),
+        {pressing_time_s(packing), "the moving wall presses the grains together"}}) {
+    if (!settles || seconds <= p.settle_time_limit_s) continue;
+    advice.push_back(format(
+        "with drag_kg_per_s {:g} and wall_drag_grains_per_d2_s {:g} {} {}, so settling fails at "
+        "settle_time_limit_s ({:g} s). Change the drag, pressure_Pa or the limit.",
+        packing.drag_kg_per_s, packing.wall_drag_grains_per_d2_s, what,
+        seconds < 1e6 ? format("only after about {:.2g} s", seconds) : "too late",
+        p.settle_time_limit_s));
   }
   for (const auto& [step, key, is_used] :
        {std::tuple(time_step(p, shear_time_step_s(p)), "steps_per_cycle",
@@ -438,99 +379,65 @@ struct ScaleRuns {
   std::vector<FrameRun> runs = {};
 };
 
-/// A value in the column may also need an earlier checkpoint. Returns how many cycles earlier.
-std::uint64_t cycles_back(const string& column) {
-  std::uint64_t most = 0;
-  for (const string& name : providers_of({&column, 1})) {
-    most = std::max(most, provider(name).cycles_back);
-  }
-  return most;
-}
-
-/// For example "a checkpoint at cycle 3 and another checkpoint 1 cycle earlier".
-string words_of_checkpoint(const string& where, std::uint64_t back) {
-  return format(
-      "a checkpoint{}{}", where,
-      back == 0 ? "" : format(" and another checkpoint {} earlier", counted(back, "cycle")));
-}
-
-// Whether the run will have a checkpoint at a cycle from `first` to `end`, and another checkpoint
-// `back` cycles earlier. `wanted`: null, or a cycle, a list or a range that the cycle must match.
-// Tries the first cycle, the first multiple of `every_cycles`, and the last cycle. If the first
-// multiple does not fit, no later multiple fits.
-bool has_checkpoint(const FrameRun& run, std::uint64_t first, std::uint64_t end, std::uint64_t back,
-                    const json& wanted = nullptr) {
-  if (wanted.is_array()) {
-    return std::ranges::any_of(
-        wanted, [&](const json& one) { return has_checkpoint(run, first, end, back, one); });
-  }
-  const auto limit = [&](const char* key, std::uint64_t without) {
-    const json stated = wanted.is_object() ? member_of(wanted, key) : wanted;
-    return stated.is_number() ? stated.get<std::uint64_t>() : without;
-  };
-  first = std::max(first, limit("min", first));
-  end = std::min(end, limit("max", end));
+/// Whether the run will have a checkpoint at one of the cycles that `wanted` selects (null: any),
+/// and another checkpoint `back` cycles earlier.
+bool has_checkpoint(const FrameRun& run, const std::array<std::uint64_t, 2>& cycles,
+                    std::uint64_t back, const json& wanted) {
   const std::uint64_t every = run.ask.checkpoint_every, last = run.ask.target_cycles;
-  const std::uint64_t begin = std::max(first, back);
-  const auto has = [&](std::uint64_t c) { return c <= last && (c % every == 0 || c == last); };
-  for (const std::uint64_t cycle : {begin, (begin + every - 1) / every * every, last}) {
-    if (begin <= cycle && cycle <= end && has(cycle) && has(cycle - back)) return true;
+  const auto has = [&](std::uint64_t cycle) { return cycle % every == 0 || cycle == last; };
+  for (std::uint64_t cycle = std::max(cycles[0], back); cycle <= std::min(cycles[1], last);
+       ++cycle) {
+    if (!has(cycle) || !has(cycle - back)) continue;
+    if (wanted.is_null() || is_within(static_cast<double>(cycle), wanted)) return true;
   }
   return false;
+}
+
+/// Why none of the runs will have a value of the column at these cycles; "" if one may have a
+/// value.
+string lack_of(const string& column, const std::array<std::uint64_t, 2>& cycles, RunGroup runs,
+               const json& wanted = nullptr) {
+  std::uint64_t back = 0;  // a value may also need an earlier checkpoint
+  for (const string& name : providers_of({&column, 1})) {
+    back = std::max(back, provider(name).cycles_back);
+  }
+  const bool any = std::ranges::any_of(
+      runs, [&](const FrameRun* run) { return has_checkpoint(*run, cycles, back, wanted); });
+  if (any) return "";
+  return format(
+      "runs lack a checkpoint {}{}{}, so {} has no value. Record more checkpoints (`every_cycles`) "
+      "or more cycles.",
+      cycles[0] == cycles[1] ? format("at cycle {}", cycles[0])
+                             : format("in cycles {} to {}", cycles[0], cycles[1]),
+      wanted.is_null() ? "" : " with " + words_of({{"cycle", wanted}}),
+      back == 0 ? "" : format(" and another checkpoint {} earlier", counted(back, "cycle")),
+      column);
 }
 
 /// Why no run will have a value for the plot; "" if some run may have one.
 string lack_of(const PlotSpec& plot, const Scale& scale, RunGroup runs) {
   const auto [shortest, longest] = std::ranges::minmax(
       std::views::transform(runs, [](const FrameRun* run) { return run->ask.target_cycles; }));
-  std::array<std::uint64_t, 2> cycles = {0, longest};
   const json wanted = member_of(plot.where, "cycle");
-  string where;
-  if (plot.cycles) {
-    cycles = *plot.cycles;
-    where = format(" in cycles {} to {}", cycles[0], cycles[1]);
-  } else if (!draws_every_cycle(plot) && !is_of_run(plot.y)) {
+  std::array<std::uint64_t, 2> cycles = plot.cycles.value_or(std::array{std::uint64_t{0}, longest});
+  if (!plot.cycles && !draws_every_cycle(plot) && !is_of_run(plot.y)) {
     if (!plot.cycle && scale.until.until) return "";  // `until` decides the last cycle
     cycles[1] = plot.cycle.value_or(shortest);
     // Without `at_cycle`, the plot draws the last cycle that `where` selects.
-    if (plot.cycle || wanted.is_null()) {
-      cycles[0] = cycles[1];
-      where = format(" at cycle {}", cycles[0]);
-    }
+    if (plot.cycle || wanted.is_null()) cycles[0] = cycles[1];
   }
-  if (cycles[1] > longest) {
-    return format("it needs cycle {}, but the last cycle of the runs is {}.", cycles[1], longest);
-  }
-  for (const string& measure : {plot.y, plot.x}) {
-    const std::uint64_t back = cycles_back(measure);
-    const bool any = std::ranges::any_of(runs, [&](const FrameRun* run) {
-      return has_checkpoint(*run, cycles[0], cycles[1], back, wanted);
-    });
-    if (any) continue;
-    if (!wanted.is_null()) where += " with " + words_of({{"cycle", wanted}});
-    return format(
-        "no run has {}, so {} has no value. Record more checkpoints (`every_cycles`) or more "
-        "cycles.",
-        words_of_checkpoint(where, back), measure);
-  }
-  return "";
+  const string lack = lack_of(plot.y, cycles, runs, wanted);
+  return lack.empty() ? lack_of(plot.x, cycles, runs, wanted) : lack;
 }
 
-/// Why a run will have no value for the claim; "" if the run may have one.
-string lack_of(const ClaimSpec& claim, const FrameRun& run) {
+/// Why a run will have no value for the claim, which needs all its cycles; "" if it may have one.
+string lack_of(const ClaimSpec& claim, const FrameRun* run) {
   if (!claim.cycles) return "";
   const auto [first, last] = *claim.cycles;
-  const std::uint64_t back = cycles_back(claim.compare);
-  if (last > run.ask.target_cycles) {
-    return format("it needs cycle {}, but the last cycle of the runs is {}.", last,
-                  run.ask.target_cycles);
-  }
   // If the first, second and last cycle have checkpoints, all cycles of the range have them.
   for (const std::uint64_t cycle : {first, std::min(first + 1, last), last}) {
-    if (has_checkpoint(run, cycle, cycle, back)) continue;
-    return format(
-        "it needs {}, which the runs do not have. Record more checkpoints (`every_cycles`).",
-        words_of_checkpoint(format(" at cycle {}", cycle), back));
+    string lack = lack_of(claim.compare, {cycle, cycle}, {&run, 1});
+    if (!lack.empty()) return lack;
   }
   return "";
 }
@@ -542,10 +449,9 @@ string lack_of_partner(const PlotSpec& plot, const PlotRuns& selection) {
   std::vector<string> alone;
   for (const FrameRun* run : selection.alone) alone.push_back(run->place.variant);
   return format(
-      "{} {} other packings than {}, so the plot omits {}. Under `settle`, set the parameters "
-      "that all packings must share.",
-      some_of(alone, 8), alone.size() == 1 ? "has" : "have", words_of(plot.minus),
-      alone.size() == 1 ? "this variant" : "these variants");
+      "the plot omits {}, because {} has other packings. Under `settle`, set the parameters that "
+      "all packings must share.",
+      some_of(alone, 8), words_of(plot.minus));
 }
 
 /// Number of curves of the plot that the entry of `series` matches.
@@ -575,21 +481,14 @@ string unused_cycle(const PlotSpec& plot) {
 
 std::vector<string> problems_of(const PlotSpec& plot, const ScaleRuns& here,
                                 std::span<const ScaleRuns> all) {
-  const Scale& scale = here.scale;
   const PlotRuns selection = selected_by(plot, here.runs);
   const std::vector<const FrameRun*> runs = selection.runs();
   std::vector<string> found = {problem_of_minus(plot, count_variants(selection.subtracted)),
                                lack_of_partner(plot, selection)};
   if (runs.empty()) {
-    json where = plot.where;
-    where.erase("cycle");
-    const bool any = !runs_with(where, here.runs).empty();
-    if (selection.alone.empty() && found[0].empty()) {
-      found.push_back(
-          any ? format("only {} is selected, and `minus` subtracts it, so nothing is drawn. Change "
-                       "`where` or `minus`.",
-                       words_of(plot.minus))
-              : format("{}, so nothing is drawn. Change `where`.", variants_have(0, where)));
+    if (found[0].empty() && found[1].empty()) {
+      found.push_back(format("no run is left{}, so nothing is drawn. Change `where` or `minus`.",
+                             plot.where.empty() ? "" : " with " + words_of(plot.where)));
     }
     return found;
   }
@@ -599,33 +498,21 @@ std::vector<string> problems_of(const PlotSpec& plot, const ScaleRuns& here,
                "each variant.",
                key));
   }
-  const bool phases = !scale.checkpoints.phases.empty();
-  if (plot.x == "shear_strain" && (!plot.cycles || !phases)) {
-    found.push_back(format("shear_strain is 0 at whole cycles. Set {}.",
-                           plot.cycles ? "`phases` of `checkpoints`"
-                           : phases    ? "`cycles`"
-                                       : "`cycles`, and `phases` of `checkpoints`"));
-  }
   for (const SeriesSpec& one : plot.series) {
-    if (plot.listed) break;  // checked only in the manifest that defines the plot
-    if (!one.column.empty()) continue;
+    // A listed plot is checked only in the manifest that defines it.
+    if (plot.listed || !one.column.empty()) continue;
     const std::size_t curves = curves_of(one, plot, runs);
-    if (curves > 1) {
-      found.push_back(format(
-          "the style for {} matches {} curves, but a style is for one curve. Add keys that choose "
-          "one curve.",
-          words_of(one.where), curves));
-    } else if (curves == 0 && std::ranges::none_of(all, [&](const ScaleRuns& other) {
-                 return curves_of(one, plot, selected_by(plot, other.runs).runs()) > 0;
-               })) {
-      found.push_back(
-          format("the style for {} matches no curve at any scale. Use only values of curves that "
-                 "the plot draws.",
-                 words_of(one.where)));
-    }
+    const auto is_drawn = [&](const ScaleRuns& other) {
+      return curves_of(one, plot, selected_by(plot, other.runs).runs()) > 0;
+    };
+    if (curves == 1 || (curves == 0 && std::ranges::any_of(all, is_drawn))) continue;
+    found.push_back(
+        format("the style for {} matches {} curves, but a style is for one curve. Choose values of "
+               "one curve that the plot draws.",
+               words_of(one.where), curves));
   }
   found.push_back(unused_cycle(plot));
-  found.push_back(lack_of(plot, scale, runs));
+  found.push_back(lack_of(plot, here.scale, runs));
   return found;
 }
 
@@ -640,7 +527,7 @@ ClaimProblems problems_of(const ClaimSpec& claim, const ScaleRuns& here) {
   ClaimProblems found = {problems_of_sides(claim, sides, true), {}};
   for (const auto& side : sides.runs) {
     for (const FrameRun* run : side) {
-      string lack = lack_of(claim, *run);
+      string lack = lack_of(claim, run);
       if (!lack.empty() && found.lacks.empty()) found.lacks.push_back(std::move(lack));
     }
   }
@@ -675,61 +562,43 @@ std::vector<std::pair<string, const Placed<Spec>*>> stated_in(
   return found;
 }
 
-/// The ids of the claims of the manifest and of its figures. A claim with `for_each` has one id for
-/// each value in the runs.
-std::set<string> ids_of_claims(const Manifest& manifest, std::span<const FrameRun> runs) {
-  std::set<string> ids;
-  for (const auto& [place, claim] : stated_in(manifest, &Manifest::claims)) {
-    for (const ClaimSpec& one : each_of(*claim, runs)) ids.insert(one.id);
-  }
-  for (const Figure& figure : computed_figures()) {
-    const bool listed = std::ranges::count(manifest.figures, figure.name) > 0;
-    if (listed) ids.insert(figure.claims.begin(), figure.claims.end());
-  }
-  return ids;
-}
-
-/// The remedy if an entry of `primary` is none of these ids.
-string advise_ids(const std::set<string>& ids) {
-  return ids.empty() ? "Remove it, because the manifest has no claims."
-                     : format("Write one of the ids: {}.", some_of(ids, 20));
-}
-
-/// Reports each entry of `primary` that is the id of no claim at the scales that have the entry.
-/// The values of `for_each` are not checked if they do not follow from this manifest: in claims of
-/// computed figures, and in claims over the runs of other experiments (`of`).
+/// Reports each entry of `primary` that is the id of no claim at any scale. The values of
+/// `for_each` are not checked if they do not follow from this manifest: in claims of computed
+/// figures, and in claims over the runs of other experiments (`of`).
 void check_primary(const Manifest& manifest, const std::vector<Scale>& scales,
                    ProblemList& problems) {
-  std::map<Position, std::set<string>> known;  // by entry
+  std::set<string> ids, unchecked;
   for (const Scale& scale : scales) {
     if (scale.primary.empty()) continue;
-    const std::set<string> ids =
-        ids_of_claims(manifest, planned_runs(manifest, scale, variants_of(scale)));
-    for (const PrimaryClaim& claim : scale.primary) {
-      known[claim.at].insert(ids.begin(), ids.end());
+    const std::vector<FrameRun> runs = planned_runs(manifest, scale, variants_of(scale));
+    for (const auto& [place, claim] : stated_in(manifest, &Manifest::claims)) {
+      for (const ClaimSpec& one : each_of(*claim, runs)) ids.insert(one.id);
+      if (!manifest.of.empty()) unchecked.insert(claim->id);
     }
-  }
-  std::set<string> unchecked;
-  if (!manifest.of.empty()) {
-    for (const ClaimSpec& claim : manifest.claims) unchecked.insert(claim.id);
   }
   for (const Figure& figure : all_figures()) {
     const bool listed = std::ranges::count(manifest.figures, figure.name) > 0 &&
                         find_named(computed_figures(), figure.name) != nullptr;
-    if (!listed && figure.of.empty()) continue;
-    unchecked.insert(figure.claims.begin(), figure.claims.end());
+    if (listed) ids.insert(figure.claims.begin(), figure.claims.end());
+    if (listed || !figure.of.empty()) {
+      unchecked.insert(figure.claims.begin(), figure.claims.end());
+    }
   }
   const auto without_value = [](const string& id) { return id.substr(0, id.find('@')); };
   for (const Scale& scale : scales) {
     for (const auto& [id, at] : scale.primary) {
-      const std::set<string>& ids = known.at(at);
-      if (id.find(' ') != string::npos) continue;  // a statement, from older manifests
       if (ids.contains(id) || unchecked.contains(without_value(id))) continue;
       if (std::ranges::count(ids, id, without_value) > 0) continue;
-      problems.add(
-          at, scale.own.contains("primary") ? format("scales.{}.primary", scale.name) : "primary",
-          "is not the id of a claim", printable(id), advise_ids(ids));
+      problems.add(at, "primary", "is not the id of a claim", printable(id),
+                   format("The claims are: {}.", ids.empty() ? "none" : some_of(ids, 20)));
     }
+  }
+}
+
+void add_warnings(const string& what, const std::vector<string>& problems,
+                  std::vector<string>& warnings) {
+  for (const string& problem : problems) {
+    if (!problem.empty()) warnings.push_back(format("{}: {}", what, problem));
   }
 }
 
@@ -750,40 +619,24 @@ void warn_of_figures(const Manifest& manifest, const ScaleRuns& here,
   for (const Scale& one : scales) {
     all.push_back({one, one.seeds.values.size(), planned_runs(manifest, one, variants_of(one))});
   }
-  const auto warn_of = [&](const string& what, const std::vector<string>& problems) {
-    for (const string& problem : problems) {
-      if (!problem.empty()) warnings.push_back(format("{}: {}", what, problem));
-    }
-  };
   for (const auto& [place, plot] : stated_in(manifest, &Manifest::plots)) {
-    warn_of(format("{}: plot {}", place, plot->name), problems_of(*plot, here, all));
+    add_warnings(format("{}: plot {}", place, plot->name), problems_of(*plot, here, all), warnings);
   }
-  std::map<string, string> said;  // ids of claims, by statement
   for (const auto& [place, stated_claim] : stated_in(manifest, &Manifest::claims)) {
     for (const ClaimSpec& claim : each_of(*stated_claim, here.runs)) {
-      said.emplace(stated(claim, sides_of(claim, here.runs).names).text, claim.id);
       const ClaimProblems found = problems_of(claim, here);
       // A shipped claim (ClaimSpec::listed) may select values that no run of this experiment has.
       if (claim.listed && !found.refusals.empty()) continue;
-      warn_of(format("{}: claim {}", place, claim.id), found.refusals);
+      const string what = format("{}: claim {}", place, claim.id);
+      add_warnings(what, found.refusals, warnings);
       // Small scales are for trials, so warn only if no other scale can decide the claim.
       const bool decided = std::ranges::any_of(all, [&](const ScaleRuns& other) {
         if (found.lacks.empty() || other.scale.name == here.scale.name) return false;
         const ClaimProblems there = problems_of(claim, other);
         return there.refusals.empty() && there.lacks.empty();
       });
-      if (!decided) warn_of(format("{}: claim {}", place, claim.id), found.lacks);
+      if (!decided) add_warnings(what, found.lacks, warnings);
     }
-  }
-  for (const auto& [primary, at] : here.scale.primary) {
-    if (primary.find(' ') == string::npos) continue;  // an id, which check_primary() has checked
-    const auto found = said.find(primary);
-    warnings.push_back(
-        found != said.end()
-            ? format("{}: primary: '{}' is the statement of a claim. Write its id, {}.",
-                     manifest.file, primary, found->second)
-            : format("{}: primary: no claim has the statement '{}'. {}", manifest.file, primary,
-                     advise_ids(ids_of_claims(manifest, here.runs))));
   }
 }
 
@@ -815,18 +668,17 @@ void check_variants(const Manifest& manifest) {
     }
     const std::uint64_t variants = variant_count(scale.sweep);
     const std::uint64_t seeds = scale.seeds.values.size();
-    if (!scale.looks.empty() && scale.looks.back() > seeds) {
-      problems.add(scale.seeds.at, path.empty() ? "looks" : path + ".looks",
-                   "needs more seeds than the scale has", std::to_string(scale.looks.back()),
-                   format("Write `seeds: {}`, or list this many seeds.", scale.looks.back()));
+    if (std::ranges::adjacent_find(scale.looks, std::greater_equal()) != scale.looks.end()) {
+      problems.add(scale.at, "looks", "are not ascending numbers of seeds", "",
+                   "Sort the numbers.");
     }
-    const SweepAxis* numbers = find_axis(scale.sweep, "seeds");
-    for (const Setting& number :
-         numbers == nullptr ? std::span<const Setting>() : numbers->values) {
-      if (number.value.get<std::uint64_t>() <= seeds) continue;
-      problems.add(number.at, path + ".sweep.zip.seeds",
-                   "is more than the number of seeds of the scale", number.value.dump(),
-                   format("Write `seeds: {}`, or list this many seeds.", number.value.dump()));
+    std::vector<Setting> needed;  // numbers of seeds
+    if (const SweepAxis* axis = find_axis(scale.sweep, "seeds")) needed = axis->values;
+    if (!scale.looks.empty()) needed.push_back({scale.looks.back(), scale.seeds.at});
+    for (const auto& [number, at] : needed) {
+      if (number <= seeds) continue;
+      problems.add(at, "seeds", "are fewer than `looks` or the sweep needs", number.dump(),
+                   format("Write `seeds: {}`, or list this many seeds.", number.dump()));
     }
     if (variants > ManifestLimits::runs || variants * seeds > ManifestLimits::runs - runs) {
       problems.add(scale.at, path.empty() ? "sweep" : path,
@@ -836,15 +688,15 @@ void check_variants(const Manifest& manifest) {
     }
     runs += variants * seeds;
   }
-  if (!manifest.labels.empty()) check_labels(manifest, scales, problems);
-  for (const Placed<ClaimSpec>& claim : manifest.claims) {
-    if (!is_formula(claim.statement)) continue;
-    problems.add(claim.at, "claims.statement", "is a text that spreadsheets read as a formula",
-                 printable(claim.statement), "Begin it with a letter or a digit.");
-  }
+  check_texts(manifest, scales, problems);
   for (const Scale& scale : scales) {
+    std::set<json> known;
     for (const Variant& variant : variants_of(scale)) {
       VariantCheck{manifest, scale, variant, problems}.run();
+      if (known.insert(variant.swept).second) continue;
+      const Sweep& sweep = scale.sweep;
+      problems.add((sweep.grid.empty() ? sweep.zip : sweep.grid).front().at, "sweep",
+                   "gives the same variant twice", variant.name, "Keep one of them.");
     }
   }
   problems.raise();  // check_primary() needs valid variants
@@ -854,28 +706,12 @@ void check_variants(const Manifest& manifest) {
 
 std::vector<string> warnings_of(const Manifest& manifest) {
   std::vector<string> warnings;
-  const auto check = [&](const auto& place, const string& name,
-                         std::initializer_list<json> selections, std::vector<string> problems) {
-    for (const json& where : selections) {
-      for (const json& one : member_of(where, "experiment")) {
-        if (std::ranges::count(manifest.of, one.get<string>()) > 0) continue;
-        problems.push_back(format("`of` does not list the experiment {}. Write one of {}.",
-                                  printable(one.get<string>()), fmt::join(manifest.of, ", ")));
-      }
-    }
-    for (const string& problem : problems) {
-      if (problem.empty()) continue;
-      warnings.push_back(
-          format("{}:{}:{}: {}: {}", manifest.file, place.at.line, place.at.column, name, problem));
-    }
-  };
-  for (const Placed<PlotSpec>& plot : manifest.plots) {
-    check(plot, "plot " + plot.name, {plot.where, plot.minus}, {unused_cycle(plot)});
-    for (const SeriesSpec& one : plot.series) check(plot, "plot " + plot.name, {one.where}, {});
+  for (const auto& [place, plot] : stated_in(manifest, &Manifest::plots)) {
+    add_warnings(format("{}: plot {}", place, plot->name), {unused_cycle(*plot)}, warnings);
   }
-  for (const Placed<ClaimSpec>& claim : manifest.claims) {
-    check(claim, "claim " + claim.id, {claim.where, claim.between[0], claim.between[1]},
-          problems_of_sides(claim, {}, false));
+  for (const auto& [place, claim] : stated_in(manifest, &Manifest::claims)) {
+    add_warnings(format("{}: claim {}", place, claim->id), problems_of_sides(*claim, {}, false),
+                 warnings);
   }
   return warnings;
 }

@@ -155,19 +155,9 @@ class TreeBuilder : public YAML::EventHandler {
   void check_text(const YAML::Mark& mark, string_view text) {
     for (string_view rest = text; !rest.empty();) {
       const auto [length, c] = decode(rest);
-      const auto reject = [&](const std::string& problem, const char* remedy = "Remove it.") {
-        refuse(file_, position(mark), "", problem, printable(text), remedy);
-      };
-      if (length == 0) {
-        reject("the escapes \\_ and \\N are not supported",
-               "Write _ without the backslash, or the text in single quotes.");
-      }
-      const auto number = static_cast<unsigned>(c);
-      if (is_control(c) && c != '\n') {
-        reject(fmt::format("holds the control character U+{:04X}", number));
-      }
-      if (is_noncharacter(c)) {
-        reject(fmt::format("holds U+{:04X}, which is not a character", number));
+      if (length == 0 || (is_control(c) && c != '\n') || is_noncharacter(c)) {
+        refuse(file_, position(mark), "", "holds an escape or a character that is not supported",
+               printable(text), "Remove it, or write the text in single quotes.");
       }
       rest.remove_prefix(length);
     }
@@ -263,32 +253,6 @@ class TreeBuilder : public YAML::EventHandler {
   Node root_;
 };
 
-// Returns the first of the lines 1 to `last` that is indented with a tab, or 0 if none is. The
-// messages of yaml-cpp about such lines vary.
-int tab_indented_line(string_view text, int last) {
-  for (int line = 1; line <= last && !text.empty(); ++line) {
-    const std::size_t end = std::min(text.find('\n'), text.size());
-    const std::size_t indent = std::min(text.find_first_not_of(" \t"), end);
-    if (text.substr(0, indent).find('\t') != string_view::npos) return line;
-    text.remove_prefix(std::min(end + 1, text.size()));
-  }
-  return 0;
-}
-
-std::string syntax_remedy(string_view text, const YAML::Exception& error) {
-  if (const int line = tab_indented_line(text, position(error.mark).line); line != 0) {
-    return fmt::format("Line {} is indented with a tab. Use spaces.", line);
-  }
-  if (error.msg.find("unicode") != std::string::npos) {
-    return "This escape gives no valid character. Write the character itself.";
-  }
-  if (error.msg.find("flow") != std::string::npos) {
-    return "A { or [ in this line, or in a line above, is not closed.";
-  }
-  return "Check the indentation, the space after each colon, and the quotes, here and in the line "
-         "above.";
-}
-
 }  // namespace
 
 const Node* Node::find(string_view name) const {
@@ -332,8 +296,10 @@ Node read_document(string_view text, string_view file) {
         error.msg.find("alias") != std::string::npos) {
       builder.refuse_reference(error.mark);
     }
-    refuse(file, position(error.mark), "", fmt::format("is not valid YAML: {}", error.msg), "",
-           syntax_remedy(text, error));
+    refuse(
+        file, position(error.mark), "", fmt::format("is not valid YAML: {}", error.msg), "",
+        "Check the indentation (spaces, no tabs), the space after each colon, the quotes and the "
+        "brackets, here and in the lines above.");
   }
   return builder.take();
 }

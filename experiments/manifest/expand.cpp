@@ -5,7 +5,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <map>
 #include <numeric>
@@ -18,7 +17,6 @@
 #include "experiments/manifest/start.hpp"
 #include "experiments/manifest/suggest.hpp"
 #include "experiments/manifest/variants.hpp"
-#include "protocols/settle.hpp"
 #include "provenance/json_text.hpp"
 #include "provenance/sha256.hpp"
 #include "provenance/words.hpp"
@@ -26,25 +24,14 @@
 namespace shearcell {
 namespace {
 
-constexpr std::string_view kDefaultScale = "desk";
-
 Scale choose_scale(const Manifest& manifest, const std::optional<std::string>& wanted) {
-  if (manifest.scales.empty()) {
-    if (!wanted || *wanted == "base") return manifest.base;
-    refuse(manifest.file, {}, "scale", "the manifest has no scales", printable(*wanted),
-           "Leave it out.");
-  }
-  const std::string name = wanted.value_or(std::string(kDefaultScale));
+  if (manifest.scales.empty() && wanted.value_or("base") == "base") return manifest.base;
+  const std::string name = wanted.value_or("desk");
   if (const Scale* found = find_named(manifest.scales, name)) return *found;
   const std::vector<std::string_view> names = names_of(manifest.scales);
-  const std::string known = fmt::format("The manifest has {}.", fmt::join(names, ", "));
-  if (!wanted) {
-    refuse(manifest.file, {}, "scale",
-           fmt::format("there is no scale {}, which is the default", name), "",
-           fmt::format("Name a scale with --scale. {}", known));
-  }
   refuse(manifest.file, {}, "scale", with_nearest("is unknown", name, names), printable(name),
-         known);
+         fmt::format("The manifest has {}; --scale selects one of them.",
+                     names.empty() ? "no scales" : fmt::format("{}", fmt::join(names, ", "))));
 }
 
 // Checks a value from the command line that replaces a value of the manifest.
@@ -216,19 +203,6 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
             placed(*plan.file, run.packing, seed);  // throws if the grains do not fit
         plan.read = fmt::format("{}: {}", plan.file->path, grains.read);
         if (!grains.warning.empty()) plan.warnings.push_back(grains.warning);
-        const Cell& cell = grains.cell;
-        const double height = std::fabs(grains.state.wall_height -
-                                        (cell.moving == MovingWall::top ? cell.bottom : cell.top));
-        const double time =
-            pressing_time(settle_scene(run.packing), height,
-                          static_cast<double>(run.packing.grains) / (cell.width * cell.depth));
-        if (plan.file->file.settles && time > run.packing.settle_time_limit_s) {
-          plan.warnings.push_back(fmt::format(
-              "{}: the packing of this file is {:.6g} d high. The moving wall needs about {:.2g} s "
-              "to press the grains together, so settling fails at settle_time_limit_s ({:g} s). "
-              "Remove the empty space above and below the grains, or raise settle_time_limit_s.",
-              plan.file->path, height, time, run.packing.settle_time_limit_s));
-        }
       }
 
       const std::string& same = variant_of.emplace(run.stage.id, run.place.variant).first->second;
@@ -237,13 +211,11 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
                                           manifest.file, same, run.place.variant));
     }
   }
-  if (const std::string* missing = wanted.unfound()) {
-    refuse(manifest.file, {}, "variant", "no variant has these values", printable(*missing),
-           fmt::format("The variants are {}.", fmt::join(wanted.seen(), "; ")));
-  }
-  if (plan.runs.empty()) {
-    refuse(manifest.file, {}, "variant", "no variant has all of these values",
-           printable(fmt::format("{}", fmt::join(options.variants, " and "))),
+  const std::string* missing = wanted.unfound();
+  if (missing != nullptr || plan.runs.empty()) {
+    refuse(manifest.file, {}, "variant", "no variant has these values",
+           printable(missing != nullptr ? *missing
+                                        : fmt::format("{}", fmt::join(options.variants, " and "))),
            fmt::format("The variants are {}.", fmt::join(wanted.seen(), "; ")));
   }
   std::vector<nlohmann::json> swept;

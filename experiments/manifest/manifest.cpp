@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <fstream>
 #include <ranges>
 #include <system_error>
@@ -58,8 +59,7 @@ void refuse(std::string_view file, Position at, const std::string& key, const st
 
 void ProblemList::add(Position at, const std::string& key, const std::string& problem,
                       const std::string& got, const std::string& remedy) {
-  const std::string text = problem_text(file_, at, key, problem, got, remedy);
-  if (known_.insert(text).second) problems_.emplace(at, text);
+  problems_.emplace(at, problem_text(file_, at, key, problem, got, remedy));
 }
 
 void ProblemList::raise() const {
@@ -87,17 +87,12 @@ Manifest recorded_manifest(std::string_view text) try {
   return {};  // the text has keys that this version cannot read
 }
 
-std::string_view why_not_until(std::string_view measure) {
-  for (const Provider& by : all_providers()) {
+bool can_be_until(std::string_view measure) {
+  return std::ranges::any_of(all_providers(), [&](const Provider& by) {
     const Measure* found = find_named(by.measures, measure);
-    if (found == nullptr) continue;
-    if (found->kind == MeasureKind::run) return "has a value only after the end of the run";
-    if (found->kind == MeasureKind::curve) return "is a curve";
-    if (found->kind == MeasureKind::grains) return "has one value for each grain";
-    if (by.from == ComputedFrom::simulation) return "needs a simulation";
-    return by.cycles_back > 0 ? "compares the checkpoint with an earlier one" : "";
-  }
-  return "is not a measure";
+    return found != nullptr && by.from != ComputedFrom::simulation && by.cycles_back == 0 &&
+           (found->kind == MeasureKind::number || found->kind == MeasureKind::count);
+  });
 }
 
 nlohmann::json to_json(const Until& until) {
@@ -108,7 +103,7 @@ Until until_from_json(const nlohmann::json& json) {
   const nlohmann::json extra = member_of(json, "extra_cycles");
   const bool fits = json.size() == 2 && extra.is_number_unsigned() && extra <= StoreLimits::cycles;
   for (const auto& [name, value] : json.items()) {
-    if (!fits || !value.is_number() || !why_not_until(name).empty()) continue;
+    if (!fits || !value.is_number() || !can_be_until(name)) continue;
     return {name, value.get<double>(), extra.get<std::uint64_t>()};
   }
   throw std::runtime_error("until: is not {MEASURE: VALUE, extra_cycles: N}, N <= 1000000");

@@ -67,8 +67,7 @@ class ProblemList {
 
  private:
   std::string file_;
-  std::multimap<Position, std::string> problems_;
-  std::set<std::string> known_;
+  std::set<std::pair<Position, std::string>> problems_;
 };
 
 /// Throws a ManifestError with the problem_text() of these arguments.
@@ -113,9 +112,9 @@ struct Until {
   bool operator==(const Until&) const = default;
 };
 
-/// Why `until` cannot use the measure; "" if it can. The measure must have one value for each
-/// checkpoint, computed from this checkpoint alone and without a simulation.
-std::string_view why_not_until(std::string_view measure);
+/// Whether `until` can use the measure: it must have one value for each checkpoint, computed from
+/// this checkpoint alone and without a simulation.
+bool can_be_until(std::string_view measure);
 
 /// {"crystalline_percent": 10, "extra_cycles": 15}, as a manifest writes it.
 nlohmann::json to_json(const Until& until);

@@ -6,8 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/algorithm/string/erase.hpp>
-#include <boost/algorithm/string/replace.hpp>
 #include <boost/algorithm/string/trim_all.hpp>
 #include <cctype>
 #include <functional>
@@ -16,10 +14,8 @@
 #include <map>
 #include <numeric>
 #include <ranges>
-#include <regex>
 #include <set>
 #include <span>
-#include <sstream>
 #include <utility>
 
 #include "analysis/estimators.hpp"
@@ -95,7 +91,9 @@ Field field_of_until(const Measure& one) {
 
 void fields(Until& until, const auto& visit) {
   for (const Provider& by : all_providers()) {
-    for (const Measure& one : by.measures) visit(until.value, field_of_until(one));
+    for (const Measure& one : by.measures) {
+      if (can_be_until(one.name)) visit(until.value, field_of_until(one));
+    }
   }
   visit(until.extra_cycles, {.name = "extra_cycles", .range = kCycles});
 }
@@ -147,6 +145,7 @@ void fields(Scale& scale, const auto& visit) {
         {.name = "start",
          .doc = "initial state: the state of a recorded run, with different noise for each seed, "
                 "or the grains of a file. Default: loose grains that settle",
+         .besides = ", or `{file: packing.extxyz}`",
          .example = "{experiment: drag, variant: \"fluid=still\", seed: 3, cycle: 10, noise_d: "
                     "1.0e-13}"});
   visit(scale.seeds,
@@ -158,15 +157,13 @@ void fields(Scale& scale, const auto& visit) {
          .doc = "`every_cycles`: number of cycles between checkpoints, default 1; the last cycle "
                 "always has a checkpoint. `phases`: after each of these checkpoints, there are "
                 "more at the given fractions of the next cycle (pause included); default none",
-         .example = "{every_cycles: 1, phases: [0.25, 0.5, 0.75]}",
-         .wanted = "a map of settings"});
+         .example = "{every_cycles: 1, phases: [0.25, 0.5, 0.75]}"});
   visit(scale.until,
         {.name = "until",
          .doc = "ends a run `extra_cycles` cycles after the end of the first cycle at which the "
                 "measure reaches the value. Default: the run ends at `cycles`",
          .besides = ", or `none`",
-         .example = "{crystalline_percent: 10, extra_cycles: 15}",
-         .wanted = "a measure with the value to reach"});
+         .example = "{crystalline_percent: 10, extra_cycles: 15}"});
   visit(scale.looks, {.name = "looks",
                       .range = {least_runs, ManifestLimits::runs},
                       .doc = "planned looks (interim analyses), each given by the number of seeds "
@@ -305,7 +302,8 @@ void fields(Placed<ClaimSpec>& claim, const auto& visit) {
       joined(measures(MeasureKind::number), measures(MeasureKind::run));
   static const Names can_be_by = joined({"experiment"}, parameters()),
                      estimators = names_of(all_estimators());
-  static const Names terms = joined({"cycle"}, can_be_compared, numbers());
+  static const Names can_be_against = joined(can_be_compared, numbers()),
+                     terms = joined({"cycle"}, can_be_against);
   visit(claim.id,
         {.name = "id",
          .doc = "required; letters, digits, -, _ and dots. `primary` and verdicts refer to the "
@@ -328,8 +326,8 @@ void fields(Placed<ClaimSpec>& claim, const auto& visit) {
       {.name = "against",
        .doc = "with `estimator: slope`: the column of the x axis, taken at the first checkpoint of "
               "each run. With `spread_ratio`: the column whose standard deviation is the divisor",
-       .names = terms,
-       .terms = terms});
+       .names = can_be_against,
+       .terms = can_be_against});
   visit(claim.where, {.name = "where",
                       .doc = "selects runs for both sides of the claim: values, lists of values, "
                              "or ranges `{min: 5200}`",
@@ -415,8 +413,7 @@ void fields(Manifest& manifest, const auto& visit) {
   visit(manifest.labels, {.name = "labels",
                           .doc = "display names of variants, for drawings, captions, claims, "
                                  "progress messages, `status` and `table`",
-                          .example = "{\"fluid=still\": fluid at rest}",
-                          .wanted = "a map of names"});
+                          .example = "{\"fluid=still\": fluid at rest}"});
   visit(manifest.plots, {.name = "plots",
                          .doc = "your own figures",
                          .example = "[{name: compaction, y: phi, x: cycle}]"});
@@ -494,57 +491,10 @@ string remedy_of(const Field& about) {
                                : fmt::format("It takes `{}`{}.", about.example, about.besides);
 }
 
-// The remedy if a value is not a map. For `start` it is a map of the likely key and this value.
-string remedy_for(const Node& in, const Field& about) {
-  if (about.name != "start" || !in.is_scalar()) return remedy_of(about);
-  const auto holds = [&](char c) { return in.text.find(c) != string::npos; };
-  const char* key = holds('@') ? "checkpoint" : holds('.') || holds('/') ? "file" : "experiment";
-  return fmt::format("Write `{{{}: {}}}`.", key, printable(in.text));
-}
-
 bool is_rgb(const Node& in) {
   const string& text = in.text;
   return in.is_scalar() && text.starts_with('#') && text.size() == 7 &&
          text.find_first_not_of("0123456789abcdefABCDEF", 1) == text.npos;
-}
-
-bool is_auto(const Field& field, const Node& node) {
-  return takes_auto(field.name) && node.is_scalar() && node.text == "auto";
-}
-
-// Translates an expression from other notations: phi**2 to phi^2. "" if the result is not valid.
-string meant_expression(const string& text) {
-  static const std::pair<std::regex, const char*> notations[] = {
-      {std::regex("\\*\\*"), "^"},
-      {std::regex("\xc2\xb2"), "^2"},
-      {std::regex("\xc2\xb3"), "^3"},
-      {std::regex("\xc2\xb7|\xc3\x97"), "*"},
-      {std::regex("\xc3\xb7"), "/"},
-      {std::regex("\xe2\x88\x92"), "-"},
-      {std::regex("\\b(np|numpy|math)\\."), ""},
-      {std::regex("\\blog\\("), "ln("},
-      {std::regex("\\bpow\\(([^(),]+),([^(),]+)\\)"), "($1)^($2)"},
-      {std::regex("(^|[-+*/^(] *)([0-9]*\\.?[0-9]+) *(?=[A-Za-z_(])(?![eE][-+0-9])"), "$1$2*"}};
-  if (text.size() > 200) return "";  // limits the recursion of std::regex
-  string meant = text;
-  for (const auto& [notation, ours] : notations) meant = std::regex_replace(meant, notation, ours);
-  return is_expression(meant) && wrong_in_expression(meant).empty() ? meant : "";
-}
-
-constexpr const char* kAllSeeds =
-    "Plots and claims use all seeds. `show: traces` draws a line for each run.";
-
-bool is_seed(string_view key) {
-  return key == "seed" || key == "seeds";
-}
-
-// Whether the text consists of two or more `terms`, separated by blanks.
-bool lacks_operator(const string& text, std::span<const string_view> terms) {
-  std::istringstream words(text);
-  const std::vector<string> names{std::istream_iterator<string>(words), {}};
-  return names.size() > 1 && std::ranges::all_of(names, [&](const string& name) {
-           return std::ranges::count(terms, name) > 0;
-         });
 }
 
 // Reads the values of keys into the members of structs. After a problem, reading continues, so that
@@ -554,6 +504,7 @@ struct Reader {
   const Node& document;
   const Scale& base;                             // the keys that apply to all scales
   std::span<const Figure> figures_to_list = {};  // the figures allowed in `figures`
+  Names experiments = {};  // the experiments whose runs plots and claims can select
 
   // Reports keys that cannot be used in a manifest with the key `of`.
   void check_of() {
@@ -594,23 +545,11 @@ struct Reader {
   // Reports a key that is not one of the `allowed` keys of its map, and says what to write.
   void reject_unknown(const Node& in, const Names& allowed) {
     static const std::vector<Field> sections = keys_of<Manifest>();
-    if (in.key == "<<")
-      return reject_key(in, "merge keys are not supported", "Write the values out.");
     if (read_number<double>(in.key)) {
       return reject_key(in, "is a number, but a key is expected", kDecimalPoint);
     }
     if (in.path == printable(in.key) && find_field(in.key) != nullptr) {  // at the top level
       return reject_key(in, "is a parameter", "Move it under `base:`.");
-    }
-    for (const string_view known : allowed) {
-      const Field* field = find_field(known);
-      const auto factor = unit_factor(in.key, known);
-      if (field == nullptr || !has_unit(*field) || !factor) continue;
-      const auto number = read_number<double>(in.text);
-      return reject_key(
-          in, "is an unknown key",
-          number ? fmt::format("Write `{}: {:.12g}`.", known, *number * *factor)
-                 : fmt::format("Write {}, with each value multiplied by {:g}.", known, *factor));
     }
     const Tried* tried = find_tried(in.key, allowed);
     if (tried != nullptr && !tried->remark.empty()) {
@@ -634,12 +573,7 @@ struct Reader {
   // Reads a number or a choice. Returns nothing if the type or range is wrong.
   std::optional<json> read_scalar(const Node& in, const Field& about) {
     if (!in.is_scalar()) {
-      const bool varies = about.get != nullptr && in.kind != Node::Kind::null;  // a parameter
-      reject_type(in, "a single value",
-                  varies ? fmt::format("To vary it, write `sweep: {{{}{}: [VALUES]}}}}`.",
-                                       is_length(about.name) ? "zip: {KEY: [VALUES], " : "grid: {",
-                                       about.name)
-                         : remedy_of(about));
+      reject_type(in, "a single value", remedy_of(about) + " `sweep` varies parameters.");
       return std::nullopt;
     }
     auto read = read_value(about, in.text, in.quoted);
@@ -672,9 +606,7 @@ struct Reader {
   // Whether the expression can be evaluated and all names in it are known.
   bool check_expression(const Node& in, const Field& about) {
     if (const string wrong = wrong_in_expression(in.text); !wrong.empty()) {
-      const string meant = meant_expression(in.text);
-      reject_value(in, wrong,
-                   meant.empty() ? expression_syntax() : fmt::format("Write `{}`.", meant));
+      reject_value(in, wrong, expression_syntax());
       return false;
     }
     bool of_run = false, of_checkpoint = false;
@@ -697,48 +629,33 @@ struct Reader {
     return !(of_run && of_checkpoint);
   }
 
-  // Adds to `where` a parameter with its value, its list of values or its range.
+  // Adds to `where` a parameter with its value, its list of values or its range. `experiment` and
+  // `cycle` are no parameters, but select runs and checkpoints.
   void read_where(const Node& in, json& where) {
-    static const Field experiment = {.name = "experiment", .longest = kLongestName};
-    if (in.key == experiment.name) {
-      std::vector<string> any(in.kind == Node::Kind::list ? 0 : 1);
-      any.empty() ? read(in, {.name = "of", .longest = kLongestName}, any)
-                  : read(in, experiment, any.front());
-      where[in.key] = any;
-      const Node* own = document.find("experiment");
-      if (document.find("of") == nullptr && (own == nullptr || any != std::vector{own->text})) {
-        reject_key(in, "can only be used with `of`",
-                   "Leave it out, because this manifest has the runs of one experiment.");
-      }
-      return;
-    }
-    if (is_seed(in.key)) return reject_key(in, "is not a parameter", kAllSeeds);
-    static const Field cycle = {.name = "cycle", .range = kCycles};  // a key for plots
-    const Field* field = in.key == cycle.name ? &cycle : find_field(in.key);
-    if (field == nullptr) return reject_unknown(in, parameters());
-    if (field != &cycle && !field->identity.distinguishes_runs()) {
-      return reject_key(in, "does not distinguish runs",
-                        "Use a parameter that distinguishes runs, such as `fluid`.");
+    const std::array others = {Field{.name = "experiment", .names = experiments},
+                               Field{.name = "cycle", .range = kCycles}};
+    const Field* parameter = find_field(in.key);
+    const Field* other = find_named(others, in.key);
+    if (other == nullptr && (parameter == nullptr || !parameter->identity.distinguishes_runs())) {
+      return reject_unknown(in, parameters());
     }
     if (where.contains(in.key)) return reject_key(in, "appears twice", "Write it once.");
+    const Field& field = other != nullptr ? *other : *parameter;
     if (in.kind == Node::Kind::list) {
       json& any = where[in.key] = json::array();
       for (const Node& item : items_of(in, "[1, 2]")) {
-        if (auto read = read_scalar(item, *field)) any.push_back(std::move(*read));
+        if (auto read = read_scalar(item, field)) any.push_back(std::move(*read));
       }
-    } else if (in.kind == Node::Kind::map && field->is_choice()) {
-      reject_type(in, "a value or a list of values", remedy_of(*field));
-    } else if (in.kind == Node::Kind::map) {
+    } else if (in.is_map() && !field.is_choice()) {
       json& range = where[in.key] = json::object();
       for (const Node& end : in.parts) {
         if (end.key != "min" && end.key != "max") {
-          reject_key(end, "is not a limit of a range", "Write numbers as `{min: 1, max: 2}`.");
-        } else if (auto read = read_scalar(end, *field)) {
+          reject_unknown(end, {"min", "max"});
+        } else if (auto read = read_scalar(end, field)) {
           range[end.key] = std::move(*read);
         }
       }
-      if (in.parts.empty()) reject(in, "has no limits", "Write `{min: 1, max: 2}`.");
-    } else if (auto read = read_scalar(in, *field)) {
+    } else if (auto read = read_scalar(in, field)) {
       where[in.key] = std::move(*read);
     }
   }
@@ -813,13 +730,8 @@ struct Reader {
   // Reads an expression, a free text, a choice from a list, or a name. `about` decides which.
   void read(const Node& in, const Field& about, string& value) {
     const string& text = in.text;
-    const bool takes_expressions = in.is_scalar() && !about.terms.empty();
-    if (takes_expressions && (is_expression(text) || !meant_expression(text).empty())) {
+    if (in.is_scalar() && !about.terms.empty() && is_expression(text)) {
       if (check_expression(in, about)) value = text;
-    } else if (takes_expressions && lacks_operator(text, about.terms)) {
-      reject_value(in, "lacks an operator between two names", expression_syntax());
-    } else if (about.is_choice() && is_seed(text)) {
-      reject_value(in, "is not a parameter", kAllSeeds);
     } else if (!about.besides.empty() && is_rgb(in)) {
       value = text;
     } else if (about.is_choice()) {
@@ -831,8 +743,9 @@ struct Reader {
                            fmt::format("It takes one {} of at most {} bytes.",
                                        about.folds ? "text" : "line", about.longest));
       }
-      reject_value_if(about.name == "cannot_be_decided" && as_seen(value).empty(), &in,
-                      "has no visible characters", "Write the reason, or leave out the key.");
+      const bool needs_text = about.name == "cannot_be_decided" || about.name == "file";
+      reject_value_if(needs_text && as_seen(value).empty(), &in, "has no visible characters",
+                      "Write a text, or leave out the key.");
       reject_value_if(about.name.ends_with("label") && std::ranges::count(text, '$') % 2 == 1, &in,
                       "has an odd number of $", "Write a formula between two $.");
     } else if (in.is_scalar() && is_name(text)) {
@@ -859,22 +772,13 @@ struct Reader {
     const std::size_t problems_before = problems.size();
     const std::span<const Node> parts = items_of(in, about.example);
     for (std::size_t k = 0; k < std::min<std::size_t>(parts.size(), 2); ++k) {
-      if (!sides || parts[k].is_map() || parts[k].is_scalar()) read(parts[k], each, both[k]);
+      read(parts[k], each, both[k]);
     }
     bool fits = parts.size() == 2;
-    if constexpr (sides) {
-      fits = fits && !both[0].empty() && !both[1].empty();
-    } else {
-      fits = fits && (both[0] < both[1] || (whole && both[0] == both[1]));
-    }
+    if constexpr (!sides) fits = fits && (both[0] < both[1] || (whole && both[0] == both[1]));
     if (fits || problems.size() > problems_before) return;
-    const bool reversed = !sides && parts.size() == 2 && both[1] < both[0];
-    reject(
-        in,
-        sides   ? "does not name two variants"
-        : whole ? "is not a first and a last cycle"
-                : "is not a window from a low to a high value",
-        reversed ? fmt::format("Write [{}, {}].", parts[1].text, parts[0].text) : remedy_of(about));
+    reject(in, sides ? "does not name two variants" : "is not a lower and an upper value",
+           remedy_of(about));
   }
 
   // Reads measures, or a map from names of columns to measures. The columns of `y` come before the
@@ -896,35 +800,21 @@ struct Reader {
     all.insert(is_y ? all.begin() : all.end(), columns.begin(), columns.end());
   }
 
-  template <HasFields T>
+  template <class T>
   void read(const Node& in, const Field& about, std::vector<T>& values) {
-    Field item = about;
-    item.example = about.example.substr(1, about.example.size() - 2);  // without the brackets
+    values.clear();  // a scale begins with the values of the top level
+    Field item = with_type<T>(about);
+    // Without the brackets; a number has no example.
+    item.example = item.example.substr(1, std::is_arithmetic_v<T> ? 0 : item.example.size() - 2);
     for (const Node& each : items_of(in, about.example)) read(each, item, values.emplace_back());
   }
 
-  // Reads the styles of curves. name_series() decides later what a key without `=` means.
+  // Reads the styles of curves. name_series() reads their keys.
   void read(const Node& in, const Field& about, std::vector<SeriesSpec>& series) {
     if (!in.is_map()) return reject_type(in, "a map", remedy_of(about));
     for (const Node& part : in.parts) {
-      SeriesSpec& one = series.emplace_back();
-      read(part, {.example = "{label: a name, colour: blue, marker: circle}"}, one);
-      one.where = part.key.find('=') == string::npos ? json{{"", part.key}} : read_selector(part);
-    }
-  }
-
-  void read(const Node& in, const Field& about, std::vector<std::vector<double>>& points) {
-    for (const Node& item : items_of(in, about.example)) {
-      const std::size_t problems_before = problems.size();
-      std::vector<double> point;
-      for (const Node& number : items_of(item, "[0.05, 0.646]")) {
-        read(number, {.range = about.range}, point.emplace_back());
-      }
-      const bool fits = point.size() == 2 || point.size() == 3;
-      if (!fits && problems.size() == problems_before) {
-        reject(item, "is not a point", "It takes [x, y], or [x, y, error].");
-      }
-      points.push_back(std::move(point));
+      read(part, {.example = "{label: a name, colour: blue, marker: circle}"},
+           series.emplace_back());
     }
   }
 
@@ -937,38 +827,8 @@ struct Reader {
     }
     // "base" is the variant of an experiment without a sweep.
     if (about.name == "variant" && in.is_scalar() && in.text == "base") return;
-    if (in.is_scalar()) {
-      const auto labels = values_of(document.find("labels"));
-      const auto label = std::ranges::find(labels, in.text, &Node::text);
-      return reject_type(in, "a map of swept values",
-                         label == labels.end()
-                             ? remedy_of(about)
-                             : fmt::format("Write the swept values of this label: `\"{}\"`.",
-                                           printable(label->key)));
-    }
-    if (!in.is_map()) return reject_type(in, "a map", remedy_of(about));
+    if (!in.is_map()) return reject_type(in, "a map of swept values", remedy_of(about));
     for (const Node& part : in.parts) read_where(part, where);
-  }
-
-  // Reads ascending numbers: numbers of seeds (`looks`), or phases of a cycle.
-  template <class T>
-  requires(std::is_arithmetic_v<T>) void read(const Node& in, const Field& about,
-                                              std::vector<T>& numbers) {
-    constexpr bool phases = !std::is_integral_v<T>;
-    for (const Node& item : items_of(in, about.example)) {
-      const auto read = read_scalar(item, with_type<T>({.range = about.range}));
-      if (!read) continue;
-      const T number = read->template get<T>();
-      if (phases && !(number > 0 && number < 1)) {
-        reject_value(item, "is not within a cycle", "Write fractions p of a cycle, 0 < p < 1.");
-      } else if (!numbers.empty() && number <= numbers.back()) {
-        reject_value(item,
-                     fmt::format("is not greater than the {} before it", phases ? "phase" : "look"),
-                     fmt::format("List them in ascending order{}.", phases ? ", each once" : ""));
-      } else {
-        numbers.push_back(number);
-      }
-    }
   }
 
   void read(const Node& in, const Field& about, std::vector<string>& names) {
@@ -977,9 +837,7 @@ struct Reader {
       read(item, {.longest = about.longest}, name);
       if (name.empty()) continue;
       if (std::ranges::find(names, name) != names.end()) {
-        reject_value(item,
-                     about.name == "of" ? "names an experiment twice" : "names a figure twice",
-                     "Keep one of them.");
+        reject_value(item, "is listed twice", "Keep one of them.");
       } else if (about.name == "figures" && find_named(figures_to_list, name) == nullptr) {
         reject_value(item, with_nearest("lists an unknown figure", name, names_of(figures_to_list)),
                      "`shearcell figures --help` lists them.");
@@ -988,19 +846,13 @@ struct Reader {
     }
   }
 
-  void read(const Node& in, const Field& about, std::vector<PrimaryClaim>& claims) {
-    claims.clear();
-    for (const Node& item : items_of(in, about.example)) {
-      PrimaryClaim claim{"", item.at};
-      read(item, {.longest = about.longest}, claim.id);
-      reject_value_if(std::ranges::count(claims, claim.id, &PrimaryClaim::id) > 0, &item,
-                      "names a claim twice", "Keep one of them.");
-      claims.push_back(std::move(claim));
-    }
+  void read(const Node& in, const Field& about, PrimaryClaim& claim) {
+    claim.at = in.at;
+    read(in, {.longest = about.longest}, claim.id);
   }
 
   void read(const Node& in, const Field& about, std::vector<VariantLabel>& labels) {
-    if (!in.is_map()) return reject_type(in, about.wanted, remedy_of(about));
+    if (!in.is_map()) return reject_type(in, "a map", remedy_of(about));
     for (const Node& part : in.parts) {
       VariantLabel& label = labels.emplace_back();
       read(part, {.longest = 60}, label.name);
@@ -1013,7 +865,7 @@ struct Reader {
   bool read_parameter(const Node& in, Settings& settings) {
     const Field* field = find_field(in.key);
     if (field == nullptr) return false;
-    if (is_auto(*field, in)) {
+    if (takes_auto(field->name) && in.text == "auto") {
       settings[in.key] = {in.text, in.at};
     } else if (auto value = read_scalar(in, *field)) {
       settings[in.key] = {std::move(*value), in.at};
@@ -1032,15 +884,10 @@ struct Reader {
     }
     settings.clear();
     for (const Node& part : settings_in(in)) {
-      const Field* field = find_field(part.key);
       if (!read_parameter(part, settings)) {
         reject_unknown(part, names_of(schema()));
       } else if (about.name == "settle" && !may_differ_in_settling(part.key)) {
-        const bool of_shear = field->identity.stage != StageKind::prepare;
-        reject_key(
-            part,
-            of_shear ? "has no effect on a packing" : "must be the same for packing and shear",
-            "Set it in `base` or in a scale.");
+        reject_key(part, "has no own value for the packing", "Set it in `base` or in a scale.");
       }
     }
   }
@@ -1081,7 +928,7 @@ struct Reader {
   std::vector<Node> written_out(const Node& in, const Field& field) {
     ValueRange range;
     const std::size_t problems_before = problems.size();
-    read(in, {.example = kRangeExample, .wanted = "a range"}, range);
+    read(in, {.example = kRangeExample}, range);
     if (problems.size() > problems_before) return {};
     std::vector<Node> values(range.count, *in.find("from"));
     values.back() = *in.find("to");
@@ -1096,7 +943,7 @@ struct Reader {
   }
 
   void read(const Node& in, const Field& about, std::vector<SweepAxis>& axes) {
-    if (!in.is_map()) return reject_value(in, "sweeps nothing", "Write `{key: [values]}`.");
+    if (!in.is_map()) return reject_type(in, "a map", "Write `{key: [values]}`.");
     for (const Node& part : in.parts) {
       static const Field seeds = {
           .name = "seeds", .range = {1, ManifestLimits::runs}, .whole = true};
@@ -1108,17 +955,9 @@ struct Reader {
       const bool length = is_length(field->name);
       if (!field->identity.distinguishes_runs() && !(about.name == "zip" && length)) {
         reject_key(part, "cannot be swept: runs with different values would be the same run",
-                   field == &seeds ? "Write `seeds: 6` beside `sweep`: each variant gets all seeds."
-                   : length ? "Set it in `base` or in a scale, or zip it with a swept parameter."
-                            : "Set it in `base` or in a scale.");
+                   length ? "Set it in `base` or in a scale, or zip it with a swept parameter."
+                          : "Set it in `base` or in a scale.");
         continue;
-      }
-      if (part.is_scalar() && part.text.find('(') != string::npos) {
-        // In `{KEY: f(1, 2)}`, YAML reads the text after the comma as another key.
-        return reject_type(part, "a list",
-                           fmt::format("Functions are not known. Write the values as a list, or a "
-                                       "range such as {}.",
-                                       kRangeExample));
       }
       SweepAxis& axis = axes.emplace_back(SweepAxis{part.key, part.key_at, {}});
       const bool is_range = part.kind == Node::Kind::map && !field->is_choice();
@@ -1126,78 +965,15 @@ struct Reader {
       const string example = field->is_choice() ? fmt::format("[{}]", fmt::join(field->names, ", "))
                                                 : "[1, 2], or " + string(kRangeExample);
       for (const Node& item : is_range ? std::span(range) : items_of(part, example)) {
-        if (is_auto(*field, item)) {
-          reject(item, "cannot be swept as `auto`",
-                 "Set it to `auto` in `base` or a scale. Each variant gets its own value.");
-        } else if (auto value = read_scalar(item, *field)) {
+        if (auto value = read_scalar(item, *field)) {
           axis.values.push_back({std::move(*value), item.at});
         }
       }
     }
   }
 
-  void read(const Node& in, const Field&, Sweep& sweep) {
-    const string remedy = "Write `grid: {key: [values]}` or `zip: {key: [values]}`.";
-    sweep = {};
-    if (!in.is_map()) return reject_value(in, "sweeps nothing", remedy);
-    for (const Node& part : in.parts) {
-      if (read_key(part, sweep)) continue;
-      if (find_field(part.key) != nullptr) {
-        reject_key(part, "must be under `grid` or `zip`", remedy);
-      } else {
-        reject_unknown(part, names_of(keys_of<Sweep>()));
-      }
-    }
-    for (const SweepAxis& axis : sweep.grid) {
-      const string path = fmt::format("{}.grid.{}", in.path, axis.key);
-      check_rows({&axis, 1}, path, "value");
-      if (std::ranges::find(sweep.zip, axis.key, &SweepAxis::key) != sweep.zip.end()) {
-        problems.add(axis.at, path, "is in both grid and zip", "", "Keep one of them.");
-      }
-    }
-    if (!sweep.zip.empty()) check_zip(sweep.zip, in.path + ".zip");
-  }
-
-  // Reports each row of values that repeats an earlier row.
-  void check_rows(std::span<const SweepAxis> axes, const string& path, const char* row_of) {
-    std::set<json> seen;
-    for (std::size_t row = 0; row < axes.front().values.size(); ++row) {
-      json values = json::array();
-      for (const SweepAxis& axis : axes) {
-        if (!is_length(axis.key)) values.push_back(axis.values[row].value);
-      }
-      if (seen.insert(values).second) continue;
-      problems.add(axes.front().values[row].at, path, fmt::format("repeats a {}", row_of),
-                   printable((row_of == string_view("value") ? values[0] : values).dump()),
-                   "Keep one of them.");
-    }
-  }
-
-  void check_zip(std::span<const SweepAxis> zip, const string& path) {
-    const SweepAxis& first = zip.front();
-    if (zip.size() == 1 && is_length(first.key)) {
-      return problems.add(first.at, path + "." + first.key, "is the only key of the zip", "",
-                          "Set it in `base` or in a scale.");
-    }
-    const std::size_t rows = first.values.size();
-    for (const SweepAxis& axis : zip) {
-      if (axis.values.size() == rows) continue;
-      return problems.add(axis.at, path + "." + axis.key,
-                          fmt::format("differs in length from {}, which has {}", first.key, rows),
-                          counted(axis.values.size(), "value"),
-                          "Give all lists of a zip the same length.");
-    }
-    check_rows(zip, path, "row of values");
-  }
-
   void read(const Node& in, const Field&, Seeds& seeds) {
     const auto is_range = [](const Node& node) { return node.text.find('-', 1) != string::npos; };
-    if (in.text.find(',') != string::npos && in.text.find(",0") == string::npos &&
-        in.text.find_first_not_of("0123456789-, ") == string::npos) {
-      const string list = boost::erase_all_copy(in.text, " ");
-      return reject_value(in, "is not a list",
-                          fmt::format("Write `[{}]`.", boost::replace_all_copy(list, ",", ", ")));
-    }
     seeds = {.counted = in.kind != Node::Kind::list && !is_range(in), .at = in.key_at};
     if (seeds.counted) {
       std::uint64_t count = 1;
@@ -1213,16 +989,14 @@ struct Reader {
     seeds.values.clear();
     std::set<std::uint64_t> known;
     for (const Node& item : is_range(in) ? std::span(&in, 1) : items_of(in, "[3, 5]")) {
-      std::array<std::uint64_t, 2> ends = {};
-      for (const bool last : {false, true}) {
-        Node end = item;
-        if (is_range(item)) {
-          const std::size_t dash = item.text.find('-', 1);
-          end.text = trimmed(last ? item.text.substr(dash + 1) : item.text.substr(0, dash));
-        }
-        read(end, {.range = {1, kLargestSeed}, .whole = true}, ends[last ? 1 : 0]);
-      }
-      const auto [first, last] = ends;
+      const Field each = {.range = {1, kLargestSeed}, .whole = true};
+      const std::size_t dash = is_range(item) ? item.text.find('-', 1) : string::npos;
+      std::uint64_t first = 0, last = 0;
+      Node end = item;
+      end.text = trimmed(item.text.substr(0, dash));
+      read(end, each, first);
+      if (dash != string::npos) end.text = trimmed(item.text.substr(dash + 1));
+      read(end, each, last);
       if (first == 0 || last == 0) continue;  // already reported
       if (last < first || last - first >= ManifestLimits::runs - seeds.values.size()) {
         reject_value(item, "is not a range from a lower to a higher seed",
@@ -1247,9 +1021,7 @@ struct Reader {
   void read(const Node& in, const Field& about, T& value) {
     value = {};
     if constexpr (requires { value.at; }) value.at = in.at;
-    if (!in.is_map()) {
-      return reject_type(in, about.wanted.empty() ? "a map" : about.wanted, remedy_for(in, about));
-    }
+    if (!in.is_map()) return reject_type(in, "a map", remedy_of(about));
     read_keys(in, value);
     for (const Field& key : keys_of<T>()) {
       if (!key.required || in.find(key.name) != nullptr) continue;
@@ -1258,71 +1030,90 @@ struct Reader {
     check(in, about, value);
   }
 
+  void check(const Node& in, const Field&, Sweep& sweep) {
+    for (const SweepAxis& axis : sweep.grid) {
+      if (std::ranges::count(sweep.zip, axis.key, &SweepAxis::key) == 0) continue;
+      problems.add(axis.at, fmt::format("{}.grid.{}", in.path, axis.key), "is in both grid and zip",
+                   "", "Keep one of them.");
+    }
+    for (const SweepAxis& axis : sweep.zip) {
+      const auto& [first, at, values] = sweep.zip.front();
+      if (axis.values.size() == values.size()) continue;
+      problems.add(axis.at, fmt::format("{}.zip.{}", in.path, axis.key),
+                   fmt::format("differs in length from {}, which has {}", first, values.size()),
+                   counted(axis.values.size(), "value"),
+                   "Give all lists of a zip the same length.");
+    }
+  }
+
   void check(const Node& in, const Field& about, Until& until) {
-    static const std::vector<Field> known = keys_of<Until>();
-    bool named = false;
-    for (const Node& part : in.parts) {
-      if (part.key == "extra_cycles" || find_named(known, part.key) == nullptr) continue;
-      if (named) problems.add(part.key_at, in.path, "names two measures", "", "Keep one of them.");
-      named = true;
-      until.measure = part.key;
-      const string why(why_not_until(part.key));
-      if (!why.empty()) reject_key(part, why, "Use another measure, such as phi.");
+    const auto is_measure = [](const Node& part) { return part.key != "extra_cycles"; };
+    const auto measure = std::ranges::find_if(in.parts, is_measure);
+    if (std::ranges::count_if(in.parts, is_measure) != 1) {
+      return reject(in, "does not name one measure", remedy_of(about));
     }
-    if (!named && in.parts.size() == 1 && in.find("extra_cycles") != nullptr) {
-      reject(in, "contains no measure", remedy_of(about));
-    }
+    until.measure = measure->key;
   }
 
   void check(const Node& in, const Field&, Checkpoints& checkpoints) {
-    if (const Node* phases = in.find("phases")) checkpoints.at = phases->at;
+    const Node* phases = in.find("phases");
+    if (phases == nullptr) return;
+    checkpoints.at = phases->at;
+    double last = 0;
+    for (const double phase : checkpoints.phases) {
+      reject_if(phase <= last || phase >= 1, phases, "are not ascending fractions of a cycle",
+                "Write numbers p, 0 < p < 1.");
+      last = phase;
+    }
+  }
+
+  // Allows at most one of these keys in the map and, if `required`, exactly one.
+  void require_one(const Node& in, bool required, std::initializer_list<const char*> keys,
+                   const string& remedy) {
+    const Node* first = nullptr;
+    for (const char* key : keys) {
+      const Node* one = in.find(key);
+      if (one == nullptr) continue;
+      if (first != nullptr) {
+        return reject(*one, fmt::format("cannot be used with {}", first->key), "Give one of them.");
+      }
+      first = one;
+    }
+    reject_if(required && first == nullptr, &in, fmt::format("lacks {}", fmt::join(keys, " or ")),
+              remedy);
   }
 
   void check(const Node& in, const Field& about, Start& start) {
-    static const std::map<string_view, Names> go_together = {
-        {"experiment", {"scale", "variant", "seed", "cycle", "noise_d"}},
-        {"checkpoint", {"seed", "noise_d"}},
-        {"file", {"unit"}}};
-    Names sources;
-    for (const auto& [source, others] : go_together) {
-      if (in.find(source) != nullptr) sources.push_back(source);
-    }
-    if (sources.size() != 1) {
-      return reject(in, "does not have exactly one of the keys experiment, checkpoint and file",
-                    remedy_of(about));
-    }
-    const Names& others = go_together.at(sources.front());
-    static const std::vector<Field> known = keys_of<Start>();
+    require_one(in, true, {"experiment", "checkpoint", "file"}, remedy_of(about));
+    static const std::map<string_view, Names> go_with = {
+        {"scale", {"experiment"}}, {"variant", {"experiment"}},
+        {"seed", {"experiment"}},  {"cycle", {"experiment"}},
+        {"unit", {"file"}},        {"noise_d", {"experiment", "checkpoint"}}};
     for (const Node& part : in.parts) {
-      if (part.key == sources.front() || std::ranges::count(others, part.key) > 0) continue;
-      if (find_named(known, part.key) == nullptr) continue;  // reported already
-      reject_key(part, fmt::format("cannot be used with {}", sources.front()),
-                 part.key == "noise_d" ? "Run a manifest with this file. Then start from that run: "
-                                         "`{experiment: NAME, seed: 1, noise_d: 1.0e-6}`."
-                                       : "Leave it out.");
+      const auto sources = go_with.find(part.key);
+      const auto is_given = [&](string_view key) { return in.find(key) != nullptr; };
+      if (sources == go_with.end() || std::ranges::any_of(sources->second, is_given)) continue;
+      reject_key(part, fmt::format("can only be used with {}", fmt::join(sources->second, " or ")),
+                 "Leave it out.");
     }
-    const Node *file = in.find("file"), *checkpoint = in.find("checkpoint");
-    if (file != nullptr && start.file.empty()) {
-      return reject_key(*file, "is not a path", "Write the path of a file.");
-    }
+    const Node* checkpoint = in.find("checkpoint");
     if (checkpoint == nullptr) return;
-    const string_view text = checkpoint->text;
-    const std::size_t at = std::min(text.find('@'), text.size());
-    start.run = text.substr(0, at);
+    const std::size_t at = checkpoint->text.find('@');
+    start.run = checkpoint->text.substr(0, at);
     const bool is_id = start.run.size() >= 8 && start.run.size() <= 64 &&
                        start.run.find_first_not_of("0123456789abcdef") == string::npos;
-    auto cycle =
-        read_value(*find_field("start_cycle"), text.substr(std::min(at + 1, text.size())), false);
-    if (!is_id || cycle.index() != 0) {
+    if (!is_id || at == string::npos) {
       return reject_value(*checkpoint, "is not a run id with a whole cycle",
                           "Write 8 or more digits of the id, @ and the cycle: `0123abcd@10`.");
     }
-    start.settings["start_cycle"] = {std::get<json>(std::move(cycle)), checkpoint->at};
+    Node cycle = *checkpoint;
+    cycle.text.erase(0, at + 1);
+    if (auto value = read_scalar(cycle, *find_field("start_cycle"))) {
+      start.settings["start_cycle"] = {std::move(*value), checkpoint->at};
+    }
   }
 
   void check(const Node& in, const Field&, const ValueRange& range) {
-    reject_if(range.from == range.to, &in, "begins and ends with the same value",
-              "List the value: [1].");
     reject_if(range.spacing == Spacing::log && std::min(range.from, range.to) <= 0, &in,
               "has logarithmic spacing, so both ends must be above 0", "Use `spacing: linear`.");
   }
@@ -1337,22 +1128,16 @@ struct Reader {
       plot.drawn = std::clamp<std::size_t>(y->parts.size(), 1, plot.also.size() + 1) - 1;
     }
     const Node *x = in.find("x"), *cycles = in.find("cycles"), *also = in.find("also");
-    if (plot.cycles && plot.cycles->at(1) < plot.cycles->at(0)) cycles = nullptr;  // reported
     const Measure* curve = find_measure(plot.y, MeasureKind::curve);
     const bool is_curve = curve != nullptr, of_run = is_of_run(plot.x);
     const string not_with_curve = "cannot be used with " + plot.y;
     reject_value_if(is_curve, x, not_with_curve,
                     fmt::format("Leave it out. The x axis of {} is {}.", plot.y,
                                 is_curve ? curve->x : string_view()));
-    reject_value_if(plot.y == plot.x, x, "is also the y of this plot", "Use another measure.");
-    const bool measured = is_measured_of_run(plot.y);
     reject_if(!plot.y.empty() && is_of_run(plot.y) && !of_run, &in,
-              fmt::format("{} {}", plot.y,
-                          measured ? "has one value for each run" : "contains no measure"),
-              measured ? "Use a parameter as x." : "Use a measure as y, such as phi.");
-    if (const Node* minus = in.find("minus"); minus != nullptr && is_curve) {
-      reject_key(*minus, not_with_curve, "Use a number as y, because curves cannot be subtracted.");
-    }
+              plot.y + " has one value for each run", "Use a parameter as x.");
+    reject_if(is_curve, in.find("minus"), not_with_curve,
+              "Use a number as y, because curves cannot be subtracted.");
     reject_value_if(plot.show == Show::rms && !is_curve && plot.x != "cycle" && !of_run,
                     in.find("show"), fmt::format("cannot be used with {} as x", plot.x),
                     "As x, use `cycle`, a parameter, or a measure with one value for each run.");
@@ -1374,31 +1159,32 @@ struct Reader {
     }
     if (const Node* series = in.find("series")) name_series(*series, plot);
     if (const Node* published = in.find("published")) {
-      for (std::size_t k = 0; k < plot.published.size(); ++k) {
-        check_published(published->parts[k], plot.published[k]);
+      for (const Node& one : published->parts) {
+        reject_if(one.find("label") == nullptr, &one, "lacks label",
+                  "Give the label that the legend of the plot shows.");
+        require_one(one, true, {"value", "points"}, "Give one of them.");
+        for (const Node& point : values_of(one.find("points"))) {
+          reject_if(point.parts.size() < 2 || point.parts.size() > 3, &point, "is not a point",
+                    "It takes [x, y], or [x, y, error].");
+        }
       }
     }
   }
 
-  // Finds what a key of `series` without `=` means: the name of a column, or a value of `by`.
+  // Reads the keys of `series`. A key without `=` is the name of a column, or a value of `by`.
   void name_series(const Node& in, Placed<PlotSpec>& plot) {
+    const std::span drawn = std::span(plot.also).first(plot.drawn);
     for (std::size_t k = 0; k < plot.series.size(); ++k) {
-      json& where = plot.series[k].where;
-      if (!where.contains("")) continue;
       const Node& part = in.parts[k];
-      const std::span drawn = std::span(plot.also).first(plot.drawn);
-      if (plot.column == part.key || std::ranges::count(drawn, part.key, &ColumnSpec::name) > 0) {
-        where = json::object();
+      json& where = plot.series[k].where = json::object();
+      if (part.key.find('=') != string::npos) {
+        where = read_selector(part);
+      } else if (plot.column == part.key ||
+                 std::ranges::count(drawn, part.key, &ColumnSpec::name) > 0) {
         plot.series[k].column = part.key;
-        continue;
-      }
-      where = json::object();
-      if (plot.by.empty()) {
-        where[""] = part.key;
+      } else if (plot.by.empty()) {
         reject_key(part, "names no parameter",
                    "Write `\"KEY=VALUE\"`, set `by` to the parameter, or name a measure in `y`.");
-      } else if (plot.by == "experiment") {
-        where[plot.by] = part.key;
       } else {
         read_where({.kind = Node::Kind::scalar,
                     .at = part.key_at,
@@ -1410,92 +1196,46 @@ struct Reader {
     }
   }
 
-  void check_published(const Node& in, const PublishedSpec& published) {
-    reject_if(published.label.empty(), &in, "lacks label",
-              "Give the label that the legend of the plot shows.");
-    reject_if(published.value.has_value() == !published.points.empty(), &in,
-              "must have a value or points, but not both", "Give one of them.");
-  }
-
   void check(const Node& in, const Field& about, Placed<ClaimSpec>& claim) {
+    if (claim.compare.empty()) return;  // reported already
     const Node *published = in.find("published"), *reaches = in.find("reaches");
-    const Node *relative = in.find("relative_margin"), *against = in.find("against");
-    const std::size_t problems_before = problems.size();
-    Names lacks;
-    // Allows only one of these keys in a claim. If the claim has none of them, adds `lacking`, if
-    // it is not null, to `lacks`.
-    const auto require_one = [&](const char* lacking, std::initializer_list<const char*> keys) {
-      const Node* first = nullptr;
-      for (const char* key : keys) {
-        const Node* one = in.find(key);
-        if (one != nullptr && first != nullptr) {
-          return reject(*one, fmt::format("cannot be used with {}", first->key),
-                        "Give one of them.");
-        }
-        if (one != nullptr) first = one;
-      }
-      if (first == nullptr && lacking != nullptr) lacks.emplace_back(lacking);
-    };
-    require_one("id", {"id", "name"});
-    reject_if(lacks.empty() && !is_claim_id(claim.id), &in, "has no id",
-              "Write an id of letters, digits, -, _ and dots: `id: S2.phi`.");
+    const Node *relative = in.find("relative_margin"), *id = in.find("id");
+    const string example = remedy_of(about);
     const Estimator* named = find_named(all_estimators(), claim.estimator);
-    const bool of_all = named != nullptr && named->one_side;
-    require_one(of_all ? nullptr : "between", {"between", "published"});
+    const bool of_all = named != nullptr && named->one_side, of_run = is_of_run(claim.compare);
+    const bool is_bound = published != nullptr && claim.is != Relation::same;
+    const auto times = {"at_cycle", "cycles", "phi", "reaches"};
+    require_one(in, true, {"id", "name"}, example);
+    require_one(in, !of_all, {"between", "published"}, example);
+    require_one(in, !is_bound, {"margin", "relative_margin"}, example);
+    require_one(in, !of_run, times, example);
+    reject_value_if(!is_claim_id(claim.id), id != nullptr ? id : in.find("name"), "is not an id",
+                    "Write letters, digits, -, _ and dots: `id: S2.phi`.");
     if (named != nullptr) {
       const bool cycle = named == &all_estimators()[0] && in.find("at_cycle") != nullptr;
       reject_if(!named->key.empty() && in.find(named->key) == nullptr && !cycle, &in,
                 fmt::format("lacks {}", named->key),
                 fmt::format("`estimator: {}` needs this key.", named->name));
-      const bool compares_run = is_of_run(claim.compare);
-      const bool takes_run = named->of_run.value_or(compares_run);
-      reject_value_if(!claim.compare.empty() && compares_run != takes_run, in.find("estimator"),
+      const bool takes_run = named->of_run.value_or(of_run);
+      reject_value_if(of_run != takes_run, in.find("estimator"),
                       fmt::format("cannot be used with {}", claim.compare),
-                      takes_run
-                          ? "Compare a measure with one value for each run, such as onset_size_phi."
-                          : "Compare a measure with one value for each checkpoint, such as phi.");
+                      fmt::format("Compare a measure with one value for each {}.",
+                                  takes_run ? "run" : "checkpoint"));
     }
-    const bool is_bound = published != nullptr && claim.is != Relation::same;
-    require_one(is_bound ? nullptr : "margin", {"margin", "relative_margin"});
-    reject_if(!lacks.empty(), &in, fmt::format("lacks {}", fmt::join(lacks, ", ")),
-              remedy_of(about));
+    for (const char* key : times) {
+      reject_if(of_run, in.find(key), claim.compare + " has one value for each run",
+                "Leave it out.");
+    }
     reject_if(claim.published && !claim.published->value, published, "lacks value",
               "Give the published number as `value`.");
     reject_if(claim.where.contains("cycle"), in.find("where"), "selects checkpoints",
               "Use `at_cycle` or `cycles`.");
     reject_if(published == nullptr && !of_all, in.find("of"), "can only be used with published",
               "Use `between` for two variants.");
-    claim.relative = relative != nullptr;
-    const std::vector<string> of_against = names_in(claim.against);
-    reject_value_if(std::ranges::count(of_against, "cycle") > 0, against,
-                    "is the same for all runs, because it is taken at the first checkpoint",
-                    claim.estimator == "slope"
-                        ? "For a slope over cycles, write `estimator: slope_over_cycles` and "
-                          "`cycles: [1, 15]`, without `against`."
-                        : "Use a parameter or a measure, such as interior_grains.");
-    if (claim.compare.empty() || problems.size() > problems_before) return;
-    const auto times = {"at_cycle", "cycles", "phi", "reaches"};
-    const auto stated =
-        std::ranges::find_if(times, [&](const char* key) { return in.find(key) != nullptr; });
-    if (!is_of_run(claim.compare)) {
-      require_one(nullptr, times);
-      const string most = "`at_cycle: 10`, `cycles: [1, 15]`";
-      if (stated == times.end() && named == nullptr) {
-        reject(in, "lacks at_cycle, cycles, phi or reaches",
-               fmt::format("Write {}, `phi: [0.646, 0.67]` or `reaches: 20`.", most));
-      } else if (stated == times.end()) {
-        reject(in, "lacks at_cycle, cycles or phi",
-               fmt::format("`estimator: {}` needs one of these keys: {} or `phi: [0.646, 0.67]`.",
-                           claim.estimator, most));
-      }
-    } else if (stated != times.end()) {
-      reject(*in.find(*stated), fmt::format("{} has one value for each run", claim.compare),
-             "Leave it out.");
-    }
     reject_if(in.find("between") == nullptr, reaches, "can only be used with between",
               "A waiting time can only be compared with another waiting time.");
-    reject_if(compares_waits(claim), relative,
-              fmt::format("cannot be used with {}", reaches != nullptr ? "reaches" : claim.compare),
+    claim.relative = relative != nullptr;
+    reject_if(compares_waits(claim), relative, "cannot be used with waiting times",
               "Use `margin`.");
     reject_if(claim.published && claim.published->value == 0.0, relative,
               "cannot be used with a published value of 0", "Use `margin`.");
@@ -1543,14 +1283,9 @@ struct Reader {
         return text.starts_with(string(name) + "_") &&
                text.find_first_not_of("0123456789", name.size() + 1) == text.npos;
       });
-      reject_value_if(clash != supplement.end(), own, "is the name of a figure of the supplement",
-                      is_stated && clash != supplement.end() && of == clash->name
-                          ? fmt::format("This manifest defines a figure with the name {}. Remove "
-                                        "the name from `figures`, or choose another name.",
-                                        of)
-                          : "Choose another name.");
-      reject_value_if(clash == supplement.end() && (is_taken || is_panel), own,
-                      "is the name of another plot or claim", "Choose another name.");
+      reject_value_if(clash != supplement.end() || is_taken || is_panel, own,
+                      "is the name of another figure, plot or claim",
+                      "Choose another name, or remove the figure from `figures`.");
     }
   }
 };
@@ -1578,6 +1313,12 @@ Manifest read_manifest(string_view text, string_view file, bool shipped) {
   manifest.base.at = root.at;
   const std::span<const Figure> known = shipped ? computed_figures() : all_figures();
   Reader reader{problems, root, manifest.base, known};
+  const Node *of = root.find("of"), *own = root.find("experiment");
+  for (const Node& one : of != nullptr    ? std::span(of->parts)
+                         : own != nullptr ? std::span(own, 1)
+                                          : std::span<const Node>()) {
+    reader.experiments.push_back(one.text);
+  }
   if (root.kind != Node::Kind::map) {
     reader.reject_type(root, "a map of keys", "Begin with `experiment: NAME`.");
     problems.raise();

@@ -6,13 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <charconv>
 #include <cmath>
-#include <limits>
-#include <numbers>
-#include <regex>
 
-#include "analysis/expression.hpp"
 #include "core/named.hpp"
 #include "core/simulation.hpp"
 #include "experiments/manifest/document.hpp"
@@ -61,65 +56,21 @@ Field row(string_view name, string_view symbol, string_view unit, const Range& r
   return field;
 }
 
-// The number in a text; infinity if no double can hold it; nothing if the text is not a number.
+// The finite number in a text, or nothing.
 std::optional<double> parse_real(string_view text) {
   if (text.starts_with('+')) text.remove_prefix(1);
-  double value = 0;
-  const char* end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
-  if (stop != end || text.starts_with('+')) return std::nullopt;
-  if (error == std::errc::result_out_of_range) return std::numeric_limits<double>::infinity();
-  return error == std::errc() ? std::optional(value) : std::nullopt;
+  const auto value = read_number<double>(text);
+  return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
-// Whether the text means infinity or not-a-number: .inf, -.Inf, .nan, inf or NaN.
-bool names_no_number(string_view text) {
-  std::string word = lower(text);
-  std::erase_if(word, [](char c) { return c == '.' || c == '+' || c == '-'; });
-  return word == "inf" || word == "infinity" || word == "nan";
+ValueProblem not_a_number(const Field& field, std::string remedy) {
+  return {field.whole ? "is not a whole number" : "is not a number", std::move(remedy)};
 }
 
 std::string takes(const Field& field) {
   constexpr std::size_t shown = 20;
   return field.names.size() > shown ? "`shearcell manual` lists them."
                                     : fmt::format("It takes {}.", expected_values(field));
-}
-
-// What to write instead of a text that is not a valid number. The text may have a decimal comma,
-// thousands separators, a unit or `x 10^`, or may be a calculation.
-std::string number_remedy(const Field& field, const std::string& text) {
-  static const std::pair<std::regex, const char*> habits[] = {
-      {std::regex("[ _']|\xc2\xa0|\xe2\x80[\x89\xaf]"), ""},  // spaces, also narrow ones
-      {std::regex("(\\*|x|\xc2\xb7|\xc3\x97)10\\^"), "e"},
-      {std::regex("\\.(?=.*,)|,(?=[0-9]{3}[,.])"), ""}};
-  if (text.size() > 64) return takes(field);  // limits the recursion of std::regex
-  std::string plain = text;
-  for (const auto& [habit, instead] : habits) plain = std::regex_replace(plain, habit, instead);
-  static const std::regex thousands(",(?=[0-9]{3}$)"), comma(",");
-  plain = field.whole ? std::regex_replace(plain, thousands, "")
-                      : std::regex_replace(plain, comma, ".");
-  // "1,500" may be 1500 or 1.5.
-  static const std::regex either("(-?[1-9][0-9]{0,2}),([0-9]{3})( *[^0-9,.]+)?");
-  const bool two = !field.whole && std::regex_match(text, either);
-  const auto thousand = two ? parse_real(std::regex_replace(text, either, "$1$2")) : std::nullopt;
-  if (parse_real(plain)) {
-    const bool both = thousand && field.range.contains(*thousand);
-    return fmt::format("Write {}{}. A number has a decimal point and no separators.",
-                       both ? fmt::format("{} or ", *thousand) : "", plain);
-  }
-  if (is_expression(text) && names_in(text).empty() && wrong_in_expression(text).empty()) {
-    const double value = evaluator_of(text)({});
-    if (field.range.contains(value)) return fmt::format("Write the result, {:.12g}.", value);
-  }
-  const std::size_t end = plain.find_last_of("0123456789") + 1;
-  const auto number = parse_real(plain.substr(0, end));
-  if (!number) return takes(field);
-  const auto factor = unit_factor(plain.substr(end), field.unit);
-  if (factor && !two && field.range.contains(*number * *factor)) {
-    return fmt::format("Write {:.12g}, in {}.", *number * *factor, field.unit);
-  }
-  return fmt::format("Write the number alone{}.",
-                     has_unit(field) ? ", in " + std::string(field.unit) : "");
 }
 
 std::string range_markdown(const Field& field) {
@@ -297,39 +248,20 @@ std::string expected_values(const Field& field) {
 }
 
 std::variant<json, ValueProblem> read_value(const Field& field, string_view text, bool quoted) {
-  json value;
-  if (field.is_choice()) {
-    value = text;
-  } else if (quoted) {
-    return ValueProblem{"is a quoted text where a number belongs",
-                        "Write the number alone, without quotes or a unit."};
-  } else if (names_no_number(text)) {
-    return ValueProblem{"is not finite", takes(field)};
-  } else {
-    const std::optional<double> real = parse_real(text);
-    if (real && !field.range.contains(*real)) {
-      const double radians = *real * std::numbers::pi / 180;
-      const bool degrees = field.unit == "rad" && *real >= 1 && field.range.contains(radians);
-      return ValueProblem{
-          "is out of range",
-          takes(field) +
-              (degrees ? fmt::format(" {} degrees are {:.6g} rad.", text, radians) : "")};
+  json value = text;
+  if (!field.is_choice()) {
+    const std::optional<double> real = quoted ? std::nullopt : parse_real(text);
+    if (!real) {
+      return not_a_number(field, takes(field) +
+                                     " Write the number alone, with a decimal point, without "
+                                     "quotes, separators or a unit.");
     }
-    if (real && !field.whole && text.size() > 1 && text[0] == '0' && std::isdigit(text[1]) != 0) {
+    if (text.size() > 1 && text[0] == '0' && std::isdigit(text[1]) != 0) {
       return ValueProblem{"begins with a zero",
                           fmt::format("{} Otherwise write {}.", kDecimalPoint, *real)};
     }
-    if (!real || (field.whole && *real != std::floor(*real))) {
-      return ValueProblem{field.whole ? "is not a whole number" : "is not a number",
-                          real ? takes(field) : number_remedy(field, std::string(text))};
-    }
-    const auto whole = read_number<std::uint64_t>(text);
-    const bool is_plain = whole && (text.size() == 1 || text.front() != '0');
-    if (field.whole && !is_plain) {
-      return ValueProblem{"is not written as a plain whole number",
-                          fmt::format("Write {:.0f}.", *real)};
-    }
-    value = field.whole ? json(*whole) : json(*real);
+    const bool whole = field.whole && field.range.contains(*real) && *real == std::floor(*real);
+    value = whole ? json(static_cast<std::uint64_t>(*real)) : json(*real);
   }
   if (auto wrong = check_value(field, value)) return std::move(*wrong);
   return value;
@@ -342,35 +274,12 @@ std::optional<ValueProblem> check_value(const Field& field, const json& value) {
     if (std::ranges::find(field.names, name) != field.names.end()) return std::nullopt;
     return ValueProblem{with_nearest("is unknown", name, field.names), takes(field)};
   }
+  if (!value.is_number()) return not_a_number(field, takes(field));
+  if (!field.range.contains(value.get<double>())) {
+    return ValueProblem{"is out of range", takes(field)};
+  }
   // Other JSON writers may write the real number 2.0 as the integer 2.
-  if (field.whole ? !value.is_number_integer() : !value.is_number()) {
-    return ValueProblem{field.whole ? "is not a whole number" : "is not a number", takes(field)};
-  }
-  const double number = value.get<double>();
-  if (!std::isfinite(number)) return ValueProblem{"is not finite", takes(field)};
-  if (!field.range.contains(number)) return ValueProblem{"is out of range", takes(field)};
-  return std::nullopt;
-}
-
-std::optional<double> unit_factor(string_view written, string_view unit) {
-  static constexpr std::pair<string_view, double> prefixes[] = {
-      {"", 1},     {"n", 1e-9}, {"u", 1e-6}, {"\xc2\xb5", 1e-6}, {"m", 1e-3},
-      {"c", 1e-2}, {"k", 1e3},  {"M", 1e6},  {"G", 1e9}};
-  for (std::size_t begin = 0; begin < unit.size(); ++begin) {
-    const string_view before = unit.substr(0, begin), rest = unit.substr(begin);
-    const bool is_key = unit.find('_') != unit.npos;
-    if (begin == 0 ? is_key : !before.ends_with('_') && !before.ends_with('/')) continue;
-    const bool divides = before.ends_with("per_") || before.ends_with('/');
-    if (divides && rest.find('2') != rest.npos) continue;  // the square of a unit
-    for (const auto& [ours, value] : prefixes) {
-      const string_view base = rest.substr(std::min(ours.size(), rest.size()));
-      if (!rest.starts_with(ours) || base.empty() || !std::isalpha(base.front())) continue;
-      for (const auto& [theirs, other] : prefixes) {
-        if (ours == theirs || written != fmt::format("{}{}{}", before, theirs, base)) continue;
-        return divides ? value / other : other / value;
-      }
-    }
-  }
+  if (field.whole && !value.is_number_integer()) return not_a_number(field, takes(field));
   return std::nullopt;
 }
 

@@ -58,7 +58,6 @@ struct Field {
   bool whole = false;                            ///< only whole numbers are allowed
   std::span<const std::string_view> terms = {};  ///< names allowed in expressions; if empty, none
   std::string_view example = {};                 ///< as YAML
-  std::string_view wanted = {};  ///< kind of value, for messages: "a map of settings"
   bool required = false;
   std::size_t longest = 0;  ///< maximum length of a free text [bytes]
   bool folds = false;       ///< the text may have several lines, which become one
@@ -114,11 +113,6 @@ bool enters(const Identity& identity, StageKind stage, std::optional<ProtocolKin
 
 /// The allowed values: "a number > 0 and <= 1e+06", "one of still, cell".
 std::string expected_values(const Field& field);
-
-/// The factor that converts a number from the unit `written` to `unit` if these differ only in one
-/// SI prefix: 0.001 for "mm" and "m". Keys that end with their unit are converted alike:
-/// "drag_g_per_s". Returns nothing for other texts.
-std::optional<double> unit_factor(std::string_view written, std::string_view unit);
 
 /// The table of parameters in experiments/REFERENCE.md.
 std::string schema_markdown();

@@ -93,21 +93,13 @@ const Tried* find_tried(string_view name, std::span<const string_view> candidate
 std::string suggest_name(string_view unknown, std::span<const string_view> candidates) {
   if (unknown.empty() || unknown.size() > kLongestGuess) return {};
   const std::string written = lower(unknown);
-  std::vector<string_view> with_unit;
   for (const string_view candidate : candidates) {
     const Field* field = find_field(candidate);
     if (field != nullptr && field->symbol == unknown) return std::string(candidate);
-    if (lower(candidate).starts_with(written + "_")) with_unit.push_back(candidate);
+    // `mass` lacks the unit of mass_kg. A parameter without a unit has no such short form.
+    const bool can_be_short = field == nullptr || has_unit(*field);
+    if (can_be_short && lower(candidate).starts_with(written + "_")) return std::string(candidate);
   }
-  // For `stiffness`, several names fit, but only stiffness_N_per_m ends in a unit and is suggested.
-  // For `settle`, several names with a unit fit, and none of them is suggested.
-  if (with_unit.size() > 1) {
-    std::erase_if(with_unit, [](string_view name) {
-      const Field* field = find_field(name);
-      return field != nullptr && (field->unit.empty() || field->unit == "1");
-    });
-  }
-  if (with_unit.size() == 1) return std::string(with_unit.front());
   const Tried* tried = find_tried(unknown, candidates);
   if (tried != nullptr && std::ranges::count(candidates, tried->instead) > 0) {
     return std::string(tried->instead);
