@@ -4,16 +4,13 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <map>
 #include <set>
 
 #include "analysis/error.hpp"
 #include "core/machine.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/figures/draw.hpp"
-#include "experiments/manifest/diagnosis.hpp"
 #include "experiments/manifest/shipped.hpp"
-#include "experiments/manifest/suggest.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/io/child_process.hpp"
 #include "provenance/io/file.hpp"
@@ -80,38 +77,6 @@ void print(const ComputedFigure& result, const std::string& path, std::set<std::
   print_verdicts(result);
 }
 
-/// Warns if `primary` of a manifest names a claim that no figure contains. Checks an experiment
-/// only if all its figures were drawn from all its runs.
-void warn_of_primary(const Store& store, const RunSelection& runs,
-                     const std::map<std::string, std::vector<ComputedFigure>>& drawn) {
-  if (!runs.variants.empty() || !runs.seeds.empty()) return;
-  for (const auto& [experiment, figures] : drawn) {
-    const std::vector<std::string>& primary = figures.back().primary;
-    if (experiment.empty() || primary.empty()) continue;
-    const auto is_drawn = [&](const WantedFigure& wanted) {
-      return std::ranges::count(figures, wanted.figure.name, &ComputedFigure::name) > 0;
-    };
-    if (!std::ranges::all_of(wanted_figures(store, {}, {experiment}).figures, is_drawn)) continue;
-    std::vector<std::string_view> said;
-    for (const ComputedFigure& figure : figures) {
-      for (const Verdict& verdict : figure.verdicts) {
-        said.insert(said.end(), {verdict.id, verdict.claim});
-      }
-    }
-    for (const Figure& figure : all_figures()) {
-      if (!figure.of.empty()) said.insert(said.end(), figure.claims.begin(), figure.claims.end());
-    }
-    for (const std::string& claim : primary) {
-      const auto is_it = [&](std::string_view one) {
-        return one == claim || one.substr(0, one.find('@')) == claim;
-      };
-      if (std::ranges::any_of(said, is_it)) continue;
-      print_stderr("warning: {}: {}\n", experiment,
-                   with_nearest(fmt::format("primary: unknown claim '{}'", claim), claim, said));
-    }
-  }
-}
-
 /// Opens the store; read-only if this user cannot write to the store (for example, an archive).
 Store open_store(const std::string& folder, FigureOptions& how) {
   try {
@@ -150,13 +115,11 @@ void figures(FigureArguments& options, Context& context) {
   how.workers = usable_cores();
   how.report = terminal_counter("measuring checkpoint");
   nlohmann::json list = nlohmann::json::array();
-  std::map<std::string, std::vector<ComputedFigure>> drawn;  // by experiment
   for (const WantedFigure& figure : wanted.figures) {
     try {
-      ComputedFigure result = draw_figure(store, figure, how);
+      const ComputedFigure result = draw_figure(store, figure, how);
       list.push_back(facts(result));
       print(result, figure.path(), told, context);
-      drawn[figure.experiment].push_back(std::move(result));
     } catch (const UsageError& problem) {
       complain_of(problem.what());
     } catch (const AnalysisError& problem) {
@@ -165,8 +128,7 @@ void figures(FigureArguments& options, Context& context) {
       complain_of(refused.what());
     }
   }
-  warn_of_primary(store, how.runs, drawn);
-  if (!drawn.empty() && !find_program("rsvg-convert")) {
+  if (!list.empty() && !find_program("rsvg-convert")) {
     print_stderr("no PDF: rsvg-convert is not installed (Debian package librsvg2-bin)\n");
   }
   if (context.json) print_json({{"figures", list}});

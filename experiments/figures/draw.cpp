@@ -197,20 +197,21 @@ std::string title_of(const Figure& figure, const std::vector<FrameRun>& runs) {
   return fmt::format("{} (these runs differ in {})", figure.title, fmt::join(varied, ", "));
 }
 
-/// Sets ComputedFigure::primary and Verdict::primary from the key `primary` of the experiment's
+/// Sets Verdict::primary from the key `primary` of the experiment's
 /// manifest at this scale. A figure of all experiments uses all manifests. A manifest names a claim
 /// by the claim's id, with or without the value of `for_each`. Older manifests name a claim by its
 /// statement.
 void mark_primary(const std::vector<ReadManifest>& manifests, ComputedFigure& figure) {
+  std::vector<std::string> primary;
   for (const ReadManifest& manifest : manifests) {
     if (!figure.experiment.empty() && manifest.experiment != figure.experiment) continue;
     for (const Scale& scale : scales_of(manifest.content)) {
       if (scale.name != figure.scale && !scale.name.empty()) continue;
-      std::ranges::transform(scale.primary, std::back_inserter(figure.primary), &PrimaryClaim::id);
+      std::ranges::transform(scale.primary, std::back_inserter(primary), &PrimaryClaim::id);
     }
   }
   for (Verdict& verdict : figure.verdicts) {
-    verdict.primary = std::ranges::any_of(figure.primary, [&](const std::string& one) {
+    verdict.primary = std::ranges::any_of(primary, [&](const std::string& one) {
       return one == verdict.id || one == verdict.claim ||
              one == verdict.id.substr(0, verdict.id.find('@'));
     });

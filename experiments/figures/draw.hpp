@@ -31,7 +31,6 @@ struct ComputedFigure : MeasureOutcome, FigureResult {
   std::size_t runs = 0;
   std::size_t checkpoints = 0;
   std::vector<std::string> notes;            ///< CollectedRuns::notes, and why values are missing
-  std::vector<std::string> primary;          ///< claims that the manifest lists under `primary`
   std::vector<std::string> empty;            ///< names of tables without a value to draw
   std::string why_empty;                     ///< "Nothing is drawn in S2b: ..."; "" if all is drawn
   std::string caption;                       ///< text of NAME.caption.txt; "" if nothing is drawn
