@@ -2,11 +2,9 @@
 // `new`: writes a commented manifest with every key of the schema.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <sstream>
-#include <system_error>
 
 #include "analysis/figure.hpp"
 #include "experiments/cli/command.hpp"
@@ -105,27 +103,6 @@ scales:
 )";
 }
 
-/// Writes a temporary file and then links it as `file`, so that `file` is never incomplete and no
-/// existing file is replaced.
-void write_new(const std::filesystem::path& file, const std::string& text) {
-  const std::filesystem::path whole =
-      file.parent_path() / fmt::format(".{}.tmp-{}-0", file.filename().string(), getpid());
-  std::error_code failed, ignored;
-  try {
-    write_output(whole, text);
-    std::filesystem::create_hard_link(whole, file, failed);
-    std::filesystem::remove(whole, ignored);
-    // The link failed: the file exists (NewFile throws), or hard links are not supported.
-    if (failed) NewFile(file).add(text);
-  } catch (const std::system_error& error) {
-    if (error.code() != std::errc::file_exists) {
-      throw std::system_error(error.code(), file.string() + ": cannot write");
-    }
-    throw UsageError(file.string() +
-                     ": the file already exists. Choose another name, or remove the file.");
-  }
-}
-
 void make(const std::string& name, Context&) {
   std::filesystem::path file = name;
   const bool whole = file.extension() == ".yaml" || file.extension() == ".yml";
@@ -139,7 +116,11 @@ void make(const std::string& name, Context&) {
   }
   const std::string text = text_of(experiment);
   parse_manifest(text, file.string());  // throws if text_of() is not a valid manifest
-  write_new(file, text);
+  if (exists(symlink_status(file))) {
+    throw UsageError(file.string() +
+                     ": the file already exists. Choose another name, or remove the file.");
+  }
+  write_output(file, text);
   print_text("{}: written. Next: shearcell plan {} --scale smoke\n", file.string(),
              shell_word(file.string()));
 }
