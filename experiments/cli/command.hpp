@@ -101,8 +101,8 @@ void add_common_options(CLI::App& command, Context& context, const std::string& 
 void add_expand_options(CLI::App& command, ExpandOptions& options);
 
 /// Reads and expands each manifest once. If the runs of manifest B start from runs of manifest A, A
-/// comes before B in the result. Passes all warnings to warn(). Also warns if two manifests of one
-/// experiment differ, or if the store has runs of another version of a manifest. If `brief` is true
+/// comes before B in the result. Passes all warnings to warn(). Also warns of each manifest that
+/// lacks runs of another version of it, in the store or earlier in the result. If `brief` is true
 /// and a manifest has more than three warnings, prints the first warning and counts the others.
 std::vector<Plan> load_plans(const std::vector<std::string>& paths, const ExpandOptions& options,
                              Context& context, bool brief = true);
