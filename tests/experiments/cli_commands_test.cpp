@@ -104,22 +104,22 @@ TEST_F(Commands, ShowRejectsAPrefixOfARunAndACheckpoint) {
 
 TEST_F(Commands, VerifyReplaysAndComparesWithAHead) {
   campaign(manifest_);
-  const std::string before = head();
+  const std::string before = head(), seq = before.substr(0, before.find(':'));
+  const std::string hash = before.substr(seq.size() + 1);
   const nlohmann::json verified = json({"verify", "--replay", "3", "--seed", "5", "--json"});
   ASSERT_EQ(verified.at("replay").at("replayed").size(), 3U);
   for (const auto& replay : verified.at("replay").at("replayed")) {
     EXPECT_EQ(replay.at("same"), true);
     EXPECT_GT(replay.at("steps"), 0) << "where a stage begins nothing is computed";
   }
-  const auto colon = before.find(':');
-  const std::string seq = before.substr(0, colon), hash = before.substr(colon + 1);
-  expect(0, {"verify", "--against", before});
   expect(0, {"verify", "--against", seq, hash});
-  expect(4, {"verify", "--against", "3:" + hash});
-  expect(4, {"verify", "--against", "9999:" + hash});
-  expect(2, {"verify", "--against", "yesterday"});
+  expect(4, {"verify", "--against", "3", hash});
+  expect(4, {"verify", "--against", "9999", hash});
+  for (const std::string wrong : {"yesterday", "yesterday 3", "3 yesterday"}) {
+    expect(2, joined({"verify", "--against"}, split(wrong)));
+  }
   expect(0, {"rebuild"}, {"3 runs"});
-  expect(0, {"verify", "--against", before});
+  expect(0, {"verify", "--against", seq, hash});
 }
 
 TEST_F(Commands, MergeRejectsConflicts) {
