@@ -116,16 +116,12 @@ void weigh(const Store& store, std::vector<ChosenRun>& runs, Packings& packings)
       std::ranges::count_if(all, [](const Measure* one) { return !has_more_digits(*one); }));
   for (ChosenRun& run : runs) {
     while (!run.checkpoints.empty() && run.bytes == 0) {
-      try {
-        const Checkpoint last = store.load_checkpoint(run.checkpoints.back());
-        run.wall_grains = last.cell.wall_grains.size();
+      const auto read = [&](std::size_t) {
+        run.wall_grains = store.load_checkpoint(run.checkpoints.back()).cell.wall_grains.size();
         run.bytes = frame_size_in_page(run.stage.grains, run.wall_grains, fields) + kFactsInPage;
-      } catch (const StoreDamaged& damage) {
-        packings.damage.insert(damage.what());
-        run.checkpoints.pop_back();
-      } catch (const FilePruned&) {
-        run.checkpoints.pop_back();
-      }
+      };
+      packings += read_in_parallel(1, 1, read, {});
+      if (run.bytes == 0) run.checkpoints.pop_back();
     }
   }
   std::erase_if(runs, [](const ChosenRun& run) { return run.checkpoints.empty(); });
