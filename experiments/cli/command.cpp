@@ -37,8 +37,9 @@ CLI::Option* add_each(CLI::App& command, const char* name, auto& values, const c
 /// Adds the seeds of a list such as "6,8" or "6-9". Throws CLI::ValidationError if invalid.
 void add_seeds(const std::string& list, std::vector<std::uint64_t>& seeds) {
   const auto refuse = [](const std::string& why) { throw CLI::ValidationError("--seed", why); };
-  for (const auto item : std::views::split(list, ',')) {
-    const std::string part(item.begin(), item.end());
+  for (std::size_t begin = 0; begin <= list.size();) {
+    const std::string part = list.substr(begin, list.find(',', begin) - begin);
+    begin += part.size() + 1;
     const std::size_t dash = part.find('-');
     const std::string first = part.substr(0, dash);
     const std::string last = dash == std::string::npos ? first : part.substr(dash + 1);
