@@ -15,7 +15,6 @@
 #include <system_error>
 
 #include "provenance/io/file.hpp"
-#include "provenance/io/read_number.hpp"
 #include "provenance/limits.hpp"
 #include "provenance/sha256.hpp"
 #include "provenance/words.hpp"
@@ -281,20 +280,6 @@ std::vector<Plan> load_plans(const std::vector<std::string>& paths, const Expand
   }
   return plans;
 }
-
-template <class Number>
-std::string unfit(const std::string& text, Number low, Number high) {
-  constexpr bool whole = std::is_integral_v<Number>;
-  const auto value = read_number<Number>(text);
-  const bool plain = value && (!whole || text[0] != '0' || text.size() == 1);
-  if (plain && *value >= low && *value <= high) return "";
-  const bool open = high == std::numeric_limits<Number>::max();
-  return fmt::format("must be a {}number from {} {} decimal digits (got '{}')",
-                     whole ? "whole " : "", low,
-                     open ? "upwards, in" : fmt::format("to {} in", high), text);
-}
-template std::string unfit(const std::string&, std::uint64_t, std::uint64_t);
-template std::string unfit(const std::string&, double, double);
 
 void add_threads_option(CLI::App& command, std::size_t& threads, const std::string& help) {
   add_number(command, "--threads,-t", threads, help, "T", 1, 1024);

@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // `new`: writes a commented manifest with every key of the schema.
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <filesystem>
 #include <sstream>
 
-#include "analysis/figure.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/manifest/manifest.hpp"
 #include "experiments/manifest/schema.hpp"
-#include "experiments/manifest/shipped.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/io/child_process.hpp"
 #include "provenance/io/file.hpp"
@@ -19,37 +16,15 @@
 namespace shearcell::cli {
 namespace {
 
-/// Wraps the text into comment lines of at most 90 columns.
-std::string commented(const std::string& text) {
-  const std::string begin = "  #";
-  std::string lines, line = begin;
-  std::istringstream words(text);
-  for (std::string word; words >> word;) {
-    if (line != begin && line.size() + 1 + word.size() > 90) {
-      lines += line + "\n";
-      line = begin;
-    }
-    line += " " + word;
-  }
-  return lines + line + "\n";
-}
-
 /// Returns comment lines: the meaning of the key, and below it the key with its default value.
 std::string entry(const Field& field) {
   std::string about(field.doc);
   if (!field.symbol.empty()) about += fmt::format("; {} in the supplement", field.symbol);
   about += fmt::format("; {}", expected_values(field));
-  return commented(about) + fmt::format("  # {}: {}\n", field.name, value_text(field.get({})));
-}
-
-std::string figure_comments() {
-  std::string text = "# Figures, and (in parentheses) the keys that the experiment must vary:\n";
-  for (const Figure& figure : all_figures()) {
-    if (figure.keys.empty()) continue;
-    text += fmt::format("#   {:<10} {} ({})\n", figure.name, figure.title,
-                        fmt::join(figure.keys, ", "));
-  }
-  return text;
+  std::istringstream lines(filled(about, 86));
+  std::string text;
+  for (std::string line; std::getline(lines, line);) text += "  # " + line + "\n";
+  return text + fmt::format("  # {}: {}\n", field.name, value_text(field.get({})));
 }
 
 std::string text_of(const std::string& experiment) {
@@ -58,7 +33,8 @@ std::string text_of(const std::string& experiment) {
 # `shearcell plan FILE --scale smoke` checks this file and lists its runs.
 experiment: {}
 question: What is to be found out?
-{}figures: [S2]
+# `shearcell figures --help` lists the figures and the keys that they compare.
+figures: [S2]
 # Your own plots and claims (see `shearcell manual`):
 # plots:
 #   - {{name: compaction, y: phi, x: cycle, show: traces}}
@@ -71,7 +47,7 @@ base:
   amplitude_rad: {}
 
 )",
-      experiment, figure_comments(), Parameters{}.grains, Parameters{}.amplitude_rad);
+      experiment, Parameters{}.grains, Parameters{}.amplitude_rad);
   for (const Field& field : schema()) {
     if (field.name != "grains" && field.name != "amplitude_rad") text += entry(field);
   }
