@@ -161,17 +161,6 @@ CampaignResult compute_rest(Store& store, const RunOptions& options, Context& co
   return result;
 }
 
-// Wraps an action for Repeated: errors are printed, and the next repetition tries again.
-std::function<void()> tried(std::function<void()> action, std::chrono::seconds interval) {
-  return [interval, action = std::move(action)] {
-    try {
-      action();
-    } catch (const std::exception& problem) {
-      print_stderr("shearcell: {}; will try again in {} s\n", problem.what(), interval.count());
-    }
-  };
-}
-
 // Returns the folder in which the task computes: its store, or if `scratch` is set, a copy on the
 // node's disk. The copy is named after submission and task, so that a restarted task finds it.
 fs::path working_folder(const fs::path& task, const std::string& scratch) {
@@ -200,12 +189,15 @@ void resume_task(const RunOptions& options, Context& context) {
     Store own(task, Access::write);
     merge_stores(own, {folder}, runs);
   };
+  const auto complain = [](const std::exception& problem) {
+    print_stderr("shearcell: {}; will try again\n", problem.what());
+  };
   CampaignResult result;
   {
     report();
-    const Repeated reports(kReportEvery, tried(report, kReportEvery));
+    const Repeated reports(kReportEvery, report, complain);
     std::optional<Repeated> saves;
-    if (is_copy) saves.emplace(kSaveEvery, tried(save, kSaveEvery));
+    if (is_copy) saves.emplace(kSaveEvery, save, complain);
     result = compute_rest(*store, options, context);
   }
   report();
