@@ -10,6 +10,7 @@
 #include <functional>
 #include <optional>
 #include <set>
+#include <tuple>
 #include <utility>
 
 #include "core/machine.hpp"
@@ -103,15 +104,11 @@ void print_result(const CampaignResult& result, Context& context) {
     fmt::print("{} computed, {} done already, {} failed, {} interrupted, {} not started\n",
                counted(result.completed, "stage"), result.already, result.failed,
                result.interrupted, result.blocked);
-    if (result.elsewhere > 0) {
-      fmt::print("{} computed by other processes in the meantime\n",
-                 counted(result.elsewhere, "stage"));
-    }
-    if (result.files_deleted > 0) {
-      fmt::print("{} deleted by --keep-every\n", counted(result.files_deleted, "file"));
-    }
-    if (result.damaged > 0) {
-      fmt::print("{} stopped by damaged files in the store\n", counted(result.damaged, "stage"));
+    for (const auto& [number, one, what] :
+         {std::tuple(result.elsewhere, "stage", "computed by other processes in the meantime"),
+          {result.files_deleted, "file", "deleted by --keep-every"},
+          {result.damaged, "stage", "stopped by damaged files in the store"}}) {
+      if (number > 0) fmt::print("{} {}\n", counted(number, one), what);
     }
   }
   if (interrupted) {

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <ranges>
 #include <set>
 #include <utility>
 #include <vector>
@@ -413,12 +414,11 @@ std::optional<FigureRecord> find_record(const Store& store, const std::string& n
     const auto [known, first] = found.try_emplace(path, figure);
     if (!first && known->second.seq < figure.seq) known->second = std::move(figure);
   }
-  std::vector<std::string> paths;
-  for (const auto& [path, figure] : found) paths.push_back(path);
-  if (paths.size() > 1) {
-    throw NotFound(fmt::format("several figures are called {}: {}", name, fmt::join(paths, ", ")));
+  if (found.empty()) return std::nullopt;
+  if (found.size() > 1) {
+    throw NotFound(fmt::format("several figures are called {}: {}", name,
+                               fmt::join(std::views::keys(found), ", ")));
   }
-  if (paths.empty()) return std::nullopt;
   return std::move(found.begin()->second);
 }
 

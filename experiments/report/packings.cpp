@@ -189,6 +189,20 @@ std::vector<GrainField> make_fields(const Measures& measures, std::size_t grains
   return fields;
 }
 
+/// {"key", "label", "unit", "low", "high"} or {"key", "label", "classes"}.
+json describe(const GrainField& field) {
+  const Measure& measure = *field.measure;
+  json described = {{"key", measure.name}, {"label", measure.words}};
+  if (!measure.scale.classes.empty()) {
+    described["classes"] = measure.scale.classes;
+  } else {
+    described.update({{"unit", measure.unit == "1" ? "" : measure.unit},
+                      {"low", field.low},
+                      {"high", field.high}});
+  }
+  return described;
+}
+
 json profile_json(const std::vector<double>& values, double unit = 1) {
   json list = json::array();
   for (const double value : values) list.push_back(rounded(value * unit, 6));
@@ -219,7 +233,7 @@ json make_frame(const CheckpointRecord& record, const MeasureSources& sources,
       make_fields(measures, analysis.grains.q6.size(), sources.facts(record.run));
   const EncodedFrame encoded = encode_frame(checkpoint, pose, analysis.grains, fields);
   json described = json::array();
-  for (const GrainField& field : fields) described.push_back(to_json(field));
+  for (const GrainField& field : fields) described.push_back(describe(field));
   return {{"name", frame_name(record)},
           {"cycle", record.cycle},
           {"sha256", record.sha256},
@@ -264,19 +278,6 @@ EncodedFrame encode_frame(const Checkpoint& checkpoint, const WallPose& pose,
     for (const double value : field.value) frame.bytes.push_back(byte_of(field, value));
   }
   return frame;
-}
-
-nlohmann::json to_json(const GrainField& field) {
-  const Measure& measure = *field.measure;
-  json described = {{"key", measure.name}, {"label", measure.words}};
-  if (!measure.scale.classes.empty()) {
-    described["classes"] = measure.scale.classes;
-  } else {
-    described.update({{"unit", measure.unit == "1" ? "" : measure.unit},
-                      {"low", field.low},
-                      {"high", field.high}});
-  }
-  return described;
 }
 
 std::size_t frame_size_in_page(std::size_t grains, std::size_t wall_grains, std::size_t fields) {
