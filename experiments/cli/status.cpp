@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <map>
-#include <optional>
 
 #include "core/machine.hpp"
 #include "experiments/cli/command.hpp"

@@ -16,7 +16,6 @@
 #include "experiments/runner/measure_sources.hpp"
 #include "experiments/runner/outlook.hpp"
 #include "experiments/runner/registered.hpp"
-#include "provenance/errors.hpp"
 #include "provenance/json_text.hpp"
 #include "provenance/words.hpp"
 

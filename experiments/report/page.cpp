@@ -11,7 +11,6 @@
 #include <map>
 #include <optional>
 #include <span>
-#include <tuple>
 
 #include "analysis/error.hpp"
 #include "analysis/plot.hpp"
