@@ -15,12 +15,111 @@
 #include <system_error>
 
 #include "provenance/io/file.hpp"
-#include "provenance/io/read_number.hpp"
 #include "provenance/limits.hpp"
 #include "provenance/sha256.hpp"
 #include "provenance/words.hpp"
 
 namespace shearcell::cli {
+namespace {
+
+bool is_stdout(const std::string& out) {
+  return out == "-" || out == "/dev/stdout";
+}
+
+CLI::Option* add_each(CLI::App& command, const char* name, auto& values, const char* help,
+                      const char* type) {
+  return command.add_option(name, values, std::string(help) + "; may be repeated")
+      ->type_name(type)
+      ->allow_extra_args(false);
+}
+
+/// Adds the seeds of a list such as "6,8" or "6-9". Throws CLI::ValidationError if invalid.
+void add_seeds(const std::string& list, std::vector<std::uint64_t>& seeds) {
+  const auto refuse = [](const std::string& why) { throw CLI::ValidationError("--seed", why); };
+  for (std::size_t begin = 0; begin <= list.size();) {
+    const std::string part = list.substr(begin, list.find(',', begin) - begin);
+    begin += part.size() + 1;
+    const std::size_t dash = part.find('-');
+    const std::string first = part.substr(0, dash);
+    const std::string last = dash == std::string::npos ? first : part.substr(dash + 1);
+    for (const std::string& seed : {first, last}) {
+      if (std::string why = unfit(seed, std::uint64_t{1}, UINT64_MAX); !why.empty()) refuse(why);
+    }
+    const std::uint64_t low = std::stoull(first), high = std::stoull(last);
+    if (high < low || high - low >= ManifestLimits::runs) {
+      refuse(fmt::format("a range of seeds is LOWEST-HIGHEST and has at most {} seeds (got '{}')",
+                         ManifestLimits::runs, part));
+    }
+    for (std::uint64_t k = 0; k <= high - low; ++k) seeds.push_back(low + k);
+  }
+}
+
+void add_variant_and_seed(CLI::App& command, std::vector<std::string>& variants,
+                          std::vector<std::uint64_t>& seeds) {
+  add_each(
+      command, "--variant", variants,
+      "Only runs with this swept value, such as fluid=cell, or with this label, as `status` prints "
+      "it. If several values are given, a run must have one of the values of each key",
+      "KEY=V");
+  const auto take = [&seeds](const std::vector<std::string>& lists) {
+    for (const std::string& list : lists) add_seeds(list, seeds);
+  };
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--seed", take, "Only runs with these seeds, such as 6 or 6,8 or 6-9; may be repeated")
+      ->allow_extra_args(false)
+      ->type_name("N");
+}
+
+bool starts_from_a_run(const Manifest& manifest) {
+  return std::ranges::any_of(scales_of(manifest),
+                             [](const Scale& scale) { return scale.start.is_recorded(); });
+}
+
+// Sorts the manifests so that each run comes after the run from which it starts. A `start` may
+// omit the experiment and mean any, so the manifests that start from no run come first.
+void order_by_start(std::vector<Manifest>& manifests) {
+  std::ranges::stable_partition(manifests, std::not_fn(starts_from_a_run));
+  for (auto next = manifests.begin(); next != manifests.end(); ++next) {
+    const auto waits = [&](const Manifest& one) {
+      const std::vector<Scale> scales = scales_of(one);
+      return std::any_of(next, manifests.end(), [&](const Manifest& other) {
+        const auto starts_here = [&](const Scale& scale) {
+          return scale.start.experiment == other.experiment;
+        };
+        return &one != &other && std::ranges::any_of(scales, starts_here);
+      });
+    };
+    const auto ready = std::find_if_not(next, manifests.end(), waits);
+    if (ready == manifests.end()) return;  // a loop; expand() reports the missing runs
+    std::rotate(next, ready, ready + 1);
+  }
+}
+
+// Figures show only the runs of the newest manifest of each experiment and scale. Warns if figures
+// will therefore omit runs of the store, or of a manifest before this one, after this plan is run.
+void warn_of_other_version(const Plan& plan, const std::vector<Stage>& known, Context& context) {
+  const Manifest& manifest = plan.manifest;
+  std::set<std::string> planned;
+  for (const PlannedRun& run : plan.runs) planned.insert(run.stage.id);
+  const std::string own = sha256_hex(manifest.text);
+  const auto left_out = std::ranges::count_if(known, [&](const Stage& stage) {
+    if (stage.kind == name_of(StageKind::prepare) || planned.contains(stage.id)) return false;
+    return std::ranges::any_of(stage.memberships, [&](const Membership& m) {
+      return m.newest && m.place.manifest != own && m.place.experiment == manifest.experiment &&
+             m.place.scale == plan.scale;
+    });
+  });
+  if (left_out == 0) return;
+  warn(context,
+       fmt::format(
+           "{}: the newest manifest of experiment {} differs from this file and has {} "
+           "that this plan lacks. After this manifest is run, figures omit these runs. To show "
+           "all runs, run one manifest that lists all of them; only missing runs are computed.",
+           manifest.file, manifest.experiment, counted(static_cast<std::size_t>(left_out), "run")));
+}
+
+}  // namespace
 
 void fail(Context& context, ExitCode code) {
   const auto gravity = [](int of) { return of == kInterrupted ? 0.5 : of; };
@@ -43,12 +142,8 @@ void print_problems(const MeasureOutcome& outcome, const char* left_out, Context
     for (const std::string& line : *lines | std::views::take(most)) {
       print_stderr("{}: {}\n", left_out, line);
     }
-    if (lines->size() > most) {
-      const bool damaged = lines == &outcome.damage;
-      print_stderr("{}: {}\n", left_out,
-                   counted(lines->size() - most,
-                           damaged ? "more damaged checkpoint" : "more pruned checkpoint"));
-    }
+    if (lines->size() <= most) continue;
+    print_stderr("{}: {}\n", left_out, counted(lines->size() - most, "more checkpoint"));
   }
   if (!outcome.cache_trouble.empty()) {
     print_stderr("measures cannot be cached: {}\n", outcome.cache_trouble);
@@ -74,14 +169,6 @@ std::string unfit_folder(const std::string& path) {
   return path == "-" ? "means standard output, but a folder is needed; give a folder"
                      : unfit_output(path);
 }
-
-namespace {
-
-bool is_stdout(const std::string& out) {
-  return out == "-" || out == "/dev/stdout";
-}
-
-}  // namespace
 
 bool is_stream(const std::string& out) {
   std::error_code missing;
@@ -117,57 +204,6 @@ void add_common_options(CLI::App& command, Context& context, const std::string& 
   command.footer(footer);
 }
 
-namespace {
-
-CLI::Option* add_each(CLI::App& command, const char* name, auto& values, const char* help,
-                      const char* type) {
-  return command.add_option(name, values, std::string(help) + "; may be repeated")
-      ->type_name(type)
-      ->allow_extra_args(false);
-}
-
-void add_variant_option(CLI::App& command, std::vector<std::string>& variants) {
-  add_each(
-      command, "--variant", variants,
-      "Only runs with this swept value, such as fluid=cell, or with this label, as `status` prints "
-      "it. If several values are given, a run must have one of the values of each key",
-      "KEY=V");
-}
-
-/// Adds the seeds of a list such as "6,8" or "6-9". Throws CLI::ValidationError if invalid.
-void add_seeds(const std::string& list, std::vector<std::uint64_t>& seeds) {
-  const auto refuse = [](const std::string& why) { throw CLI::ValidationError("--seed", why); };
-  for (std::size_t begin = 0; begin <= list.size();) {
-    const std::string part = list.substr(begin, list.find(',', begin) - begin);
-    begin += part.size() + 1;
-    const std::size_t dash = part.find('-');
-    const std::string first = part.substr(0, dash);
-    const std::string last = dash == std::string::npos ? first : part.substr(dash + 1);
-    for (const std::string& seed : {first, last}) {
-      if (std::string why = unfit(seed, std::uint64_t{1}, UINT64_MAX); !why.empty()) refuse(why);
-    }
-    const std::uint64_t low = std::stoull(first), high = std::stoull(last);
-    if (high < low || high - low >= ManifestLimits::runs) {
-      refuse(fmt::format("a range of seeds is LOWEST-HIGHEST and has at most {} seeds (got '{}')",
-                         ManifestLimits::runs, part));
-    }
-    for (std::uint64_t k = 0; k <= high - low; ++k) seeds.push_back(low + k);
-  }
-}
-
-void add_seed_option(CLI::App& command, std::vector<std::uint64_t>& seeds) {
-  const auto take = [&seeds](const std::vector<std::string>& lists) {
-    for (const std::string& list : lists) add_seeds(list, seeds);
-  };
-  command
-      .add_option_function<std::vector<std::string>>(
-          "--seed", take, "Only runs with these seeds, such as 6 or 6,8 or 6-9; may be repeated")
-      ->allow_extra_args(false)
-      ->type_name("N");
-}
-
-}  // namespace
-
 std::filesystem::path existing_folder(const std::string& store) {
   std::filesystem::path place = std::filesystem::absolute(store);
   std::error_code ignored;  // a folder without access permission is treated as missing
@@ -185,15 +221,13 @@ void add_expand_options(CLI::App& command, ExpandOptions& options) {
              "Number of seeds, instead of the number in the manifest. Runs with other seeds stay "
              "in the store",
              "N", 1);
-  add_variant_option(command, options.variants);
-  add_seed_option(command, options.only_seeds);
+  add_variant_and_seed(command, options.variants, options.only_seeds);
 }
 
 void add_selection_options(CLI::App& command, RunSelection& selection, bool states) {
   add_each(command, "--experiment", selection.experiments, "Only runs of this experiment", "NAME");
   add_each(command, "--scale", selection.scales, "Only runs of this scale", "NAME");
-  add_variant_option(command, selection.variants);
-  add_seed_option(command, selection.seeds);
+  add_variant_and_seed(command, selection.variants, selection.seeds);
   if (!states) return;
   add_each(command, "--state", selection.states, "Only runs in this state", "STATE")
       ->check(one_of<StageState>());
@@ -215,84 +249,6 @@ void warn(Context& context, const std::string& warning) {
   context.warnings.push_back(warning);
 }
 
-namespace {
-
-void warn_of_equal_names(const std::vector<Manifest>& manifests, Context& context) {
-  std::map<std::string, const Manifest*> known;
-  for (const Manifest& manifest : manifests) {
-    const Manifest& first = *known.try_emplace(manifest.experiment, &manifest).first->second;
-    if (first.text == manifest.text) continue;
-    warn(context,
-         fmt::format("{} and {} are different manifests of one experiment, {}. Figures show only "
-                     "the manifest that is run last. Change `experiment` in one manifest.",
-                     first.file, manifest.file, manifest.experiment));
-  }
-}
-
-// Returns the stages of the store; empty if there is no store or the store cannot be read.
-std::vector<Stage> known_runs(const Context& context) {
-  try {
-    if (const auto store = open_if_there(context.store)) return store->stages();
-  } catch (const std::exception&) {
-    // Not reported here: the command opens the store once more and then reports the error.
-  }
-  return {};
-}
-
-bool starts_from_a_run(const Manifest& manifest) {
-  return std::ranges::any_of(scales_of(manifest),
-                             [](const Scale& scale) { return scale.start.is_recorded(); });
-}
-
-// Sorts the manifests so that each run comes after the run from which it starts. A `start` may
-// omit the experiment and mean any, so the manifests that start from no run come first.
-void order_by_start(std::vector<Manifest>& manifests, Context& context) {
-  std::ranges::stable_partition(manifests, std::not_fn(starts_from_a_run));
-  for (auto next = manifests.begin(); next != manifests.end(); ++next) {
-    const auto waits_for = [](const Manifest& one, const Manifest& other) {
-      return &one != &other && std::ranges::any_of(scales_of(one), [&](const Scale& scale) {
-        return scale.start.experiment == other.experiment;
-      });
-    };
-    const auto ready = std::find_if(next, manifests.end(), [&](const Manifest& one) {
-      return std::none_of(next, manifests.end(),
-                          [&](const Manifest& other) { return waits_for(one, other); });
-    });
-    if (ready == manifests.end()) {
-      return warn(context,
-                  fmt::format("{}: the `start` keys of the manifests form a loop. The runs from "
-                              "which this manifest starts must already be in the store",
-                              next->file));
-    }
-    std::rotate(next, ready, ready + 1);
-  }
-}
-
-// Figures show only the runs of the newest manifest of each experiment and scale. Warns if figures
-// will therefore omit runs of the store after this plan is run.
-void warn_of_other_version(const Plan& plan, const std::vector<Stage>& known, Context& context) {
-  const Manifest& manifest = plan.manifest;
-  std::set<std::string> planned;
-  for (const PlannedRun& run : plan.runs) planned.insert(run.stage.id);
-  const std::string own = sha256_hex(manifest.text);
-  const auto left_out = std::ranges::count_if(known, [&](const Stage& stage) {
-    if (stage.kind == name_of(StageKind::prepare) || planned.contains(stage.id)) return false;
-    return std::ranges::any_of(stage.memberships, [&](const Membership& m) {
-      return m.newest && m.place.manifest != own && m.place.experiment == manifest.experiment &&
-             m.place.scale == plan.scale;
-    });
-  });
-  if (left_out == 0) return;
-  warn(context,
-       fmt::format(
-           "{}: the store's newest manifest of experiment {} differs from this file and has {} "
-           "that this plan lacks. After this manifest is run, figures omit these runs. To show "
-           "all runs, run one manifest that lists all of them; only missing runs are computed.",
-           manifest.file, manifest.experiment, counted(static_cast<std::size_t>(left_out), "run")));
-}
-
-}  // namespace
-
 std::vector<Plan> load_plans(const std::vector<std::string>& paths, const ExpandOptions& options,
                              Context& context, bool brief) {
   constexpr std::size_t most = 3;  // warnings printed for one manifest
@@ -301,10 +257,13 @@ std::vector<Plan> load_plans(const std::vector<std::string>& paths, const Expand
   for (const std::string& path : paths) {
     if (read.insert(path).second) manifests.push_back(load_manifest(path));
   }
-  warn_of_equal_names(manifests, context);
-  order_by_start(manifests, context);
-  const std::vector<Stage> stored = known_runs(context);
-  std::vector<Stage> known = stored;
+  order_by_start(manifests);
+  std::vector<Stage> known;
+  try {
+    if (const auto store = open_if_there(context.store)) known = store->stages();
+  } catch (const std::exception&) {
+    // Not reported here: the command opens the store once more and then reports the error.
+  }
   ExpandOptions with_known = options;
   std::vector<Plan> plans;
   for (const Manifest& manifest : manifests) {
@@ -316,25 +275,11 @@ std::vector<Plan> load_plans(const std::vector<std::string>& paths, const Expand
     } else {
       for (const std::string& warning : plan.warnings) warn(context, warning);
     }
-    warn_of_other_version(plan, stored, context);
+    warn_of_other_version(plan, known, context);
     add_as_computed(plan, known);
   }
   return plans;
 }
-
-template <class Number>
-std::string unfit(const std::string& text, Number low, Number high) {
-  constexpr bool whole = std::is_integral_v<Number>;
-  const auto value = read_number<Number>(text);
-  const bool plain = value && (!whole || text[0] != '0' || text.size() == 1);
-  if (plain && *value >= low && *value <= high) return "";
-  const bool open = high == std::numeric_limits<Number>::max();
-  return fmt::format("must be a {}number from {} {} decimal digits (got '{}')",
-                     whole ? "whole " : "", low,
-                     open ? "upwards, in" : fmt::format("to {} in", high), text);
-}
-template std::string unfit(const std::string&, std::uint64_t, std::uint64_t);
-template std::string unfit(const std::string&, double, double);
 
 void add_threads_option(CLI::App& command, std::size_t& threads, const std::string& help) {
   add_number(command, "--threads,-t", threads, help, "T", 1, 1024);

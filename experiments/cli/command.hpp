@@ -2,6 +2,8 @@
 // What the subcommands share: common options, output and exit codes.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <cstdint>
 #include <filesystem>
@@ -18,6 +20,7 @@
 #include "experiments/manifest/expand.hpp"
 #include "experiments/runner/measure.hpp"
 #include "experiments/runner/terminal.hpp"
+#include "provenance/io/read_number.hpp"
 #include "provenance/store.hpp"
 
 namespace shearcell::cli {
@@ -101,8 +104,8 @@ void add_common_options(CLI::App& command, Context& context, const std::string& 
 void add_expand_options(CLI::App& command, ExpandOptions& options);
 
 /// Reads and expands each manifest once. If the runs of manifest B start from runs of manifest A, A
-/// comes before B in the result. Passes all warnings to warn(). Also warns if two manifests of one
-/// experiment differ, or if the store has runs of another version of a manifest. If `brief` is true
+/// comes before B in the result. Passes all warnings to warn(). Also warns of each manifest that
+/// lacks runs of another version of it, in the store or earlier in the result. If `brief` is true
 /// and a manifest has more than three warnings, prints the first warning and counts the others.
 std::vector<Plan> load_plans(const std::vector<std::string>& paths, const ExpandOptions& options,
                              Context& context, bool brief = true);
@@ -123,7 +126,16 @@ std::vector<PlacedRun> by_run(const std::vector<Run>& selected);
 /// Returns an error message if the text is not a decimal number from `low` to `high`, else "". A
 /// double may have a fraction and an exponent. A std::uint64_t must not have leading zeros.
 template <class Number>
-std::string unfit(const std::string& text, Number low, Number high);
+std::string unfit(const std::string& text, Number low, Number high) {
+  constexpr bool whole = std::is_integral_v<Number>;
+  const auto value = read_number<Number>(text);
+  const bool plain = value && (!whole || text[0] != '0' || text.size() == 1);
+  if (plain && *value >= low && *value <= high) return "";
+  const bool open = high == std::numeric_limits<Number>::max();
+  return fmt::format("must be a {}number from {} {} decimal digits (got '{}')",
+                     whole ? "whole " : "", low,
+                     open ? "upwards, in" : fmt::format("to {} in", high), text);
+}
 
 template <class Value>
 using NumberOf = std::conditional_t<std::is_floating_point_v<Value>, double, std::uint64_t>;

@@ -6,9 +6,9 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <limits>
 #include <sstream>
-#include <stdexcept>
 #include <utility>
 
 #include "core/drive.hpp"
@@ -77,7 +77,7 @@ struct CycleRange {
   }
 };
 
-/// Reads the value of --cycles. Throws std::invalid_argument if it is invalid.
+/// Reads the value of --cycles. Throws UsageError if it is invalid.
 CycleRange parse_cycles(const std::string& text) {
   CycleRange range;
   std::istringstream parts(text);
@@ -88,51 +88,45 @@ CycleRange parse_cycles(const std::string& text) {
     const auto value = read_number<double>(part);
     const bool fits = value && std::isfinite(*value) && *value >= (k == 2 ? 1e-9 : 0);
     if (k >= 3 || !fits) {
-      throw std::invalid_argument(
-          "--cycles needs A, A:B or A:B:STEP, such as 1.25, 0:60 or ::10 (got " + text + ")");
+      throw UsageError("--cycles needs A, A:B or A:B:STEP, such as 1.25, 0:60 or ::10 (got " +
+                       text + ")");
     }
     *values[k] = *value;
-    if (range.last < range.first) {
-      throw std::invalid_argument(fmt::format(
-          "--cycles {}: the first cycle is after the last; write {}:{}", text, part, range.first));
-    }
+  }
+  if (range.last < range.first) {
+    throw UsageError(fmt::format("--cycles {}: the first cycle is after the last", text));
   }
   if (k == 1 && text.find(':') == std::string::npos) range.last = range.first;
   return range;
 }
 
-// Returns what experiments request of this run: cycles, `until` and checkpoints. If the user gave
-// the id of the run, all experiments count, otherwise only the selected experiments.
-std::vector<Ask> asks_of(const PlacedRun& run) {
-  return asks_of(run.places.empty() ? run.stage.memberships : run.places);
-}
+/// The run has no stored checkpoint in the selected cycles.
+struct NothingToExport : UsageError {
+  using UsageError::UsageError;
+};
 
-std::vector<CheckpointRecord> chosen(const Store& store, const PlacedRun& wanted,
-                                     const ExportOptions& options) {
-  const Stage& stage = wanted.stage;
-  const std::string& cycles = options.cycles;
+std::vector<CheckpointRecord> chosen(const Store& store, const PlacedRun& run,
+                                     const std::string& cycles) {
+  const Stage& stage = run.stage;
   const CycleRange range = parse_cycles(cycles);
   const std::optional<Drive> motion = shear_drive(stage);
   const double near = motion ? 0.5 / static_cast<double>(cycle_steps(*motion)) : 0;
-  std::vector<CheckpointRecord> records;
-  std::size_t pruned = 0;
   // A single cycle may also select a checkpoint that exists only because of an interruption.
-  const bool by_name = range.first == range.last;
-  std::vector<CheckpointRecord> all = store.checkpoints(stage.id, Listed::and_pruned);
-  if (!by_name) {
-    all = wanted.places.empty() ? asked_checkpoints(stage, asks_of(wanted), all).made
-                                : checkpoints_for(store, stage, asks_of(wanted));
+  const std::vector<CheckpointRecord> all =
+      range.first == range.last ? store.checkpoints(stage.id, Listed::and_pruned)
+                                : checkpoints_for(store, stage, asks_of(run.places));
+  if (all.empty()) {
+    throw NothingToExport(fmt::format("run {:.8} has no checkpoint yet", stage.id));
   }
-  for (const CheckpointRecord& record : all) {
-    if (!range.holds(record.cycle, near)) continue;
-    if (record.state == CheckpointState::pruned) ++pruned;
-    if (record.state == CheckpointState::recorded) records.push_back(record);
-  }
+  std::vector<CheckpointRecord> records;
+  std::ranges::copy_if(all, std::back_inserter(records), [&](const CheckpointRecord& record) {
+    return range.holds(record.cycle, near);
+  });
+  const std::size_t pruned = std::erase_if(records, [](const CheckpointRecord& record) {
+    return record.state == CheckpointState::pruned;
+  });
   if (records.empty()) {
-    if (all.empty()) {
-      throw std::invalid_argument(fmt::format("run {:.8} has no checkpoint yet", stage.id));
-    }
-    throw std::invalid_argument(
+    throw NothingToExport(
         fmt::format("run {:.8} has no stored checkpoint{}{}; {}", stage.id,
                     cycles.empty() ? "" : " in cycles ", cycles,
                     pruned > 0 ? "`shearcell regenerate` recomputes the pruned checkpoints"
@@ -146,11 +140,11 @@ std::vector<CheckpointRecord> chosen(const Store& store, const PlacedRun& wanted
   return records;
 }
 
-/// Throws std::invalid_argument if `out` exists. An empty folder is allowed if `folder` is true.
+/// Throws UsageError if `out` exists. An empty folder is allowed if `folder` is true.
 void require_new(const fs::path& out, bool folder) {
   const bool usable = folder && fs::is_directory(out) && fs::is_empty(out);
   if (fs::exists(fs::symlink_status(out)) && !usable) {
-    throw std::invalid_argument(out.string() + " already exists. Choose another path.");
+    throw UsageError(out.string() + " already exists. Choose another path.");
   }
 }
 
@@ -177,7 +171,7 @@ CrateFacts crate_of(const Store& store, const std::string& run, const std::strin
 
 /// Returns the place (experiment, variant and seed) that gives the exported file its name.
 Place shown_place(const PlacedRun& run) {
-  return run.places.empty() ? first_place(run.stage) : run.places.front().place;
+  return run.places.empty() ? Place{} : run.places.front().place;
 }
 
 std::vector<std::string> write_records(const Store& store, const PlacedRun& run,
@@ -192,7 +186,7 @@ std::vector<std::string> write_records(const Store& store, const PlacedRun& run,
   const LengthUnit unit = options.metres ? LengthUnit::m : LengthUnit::d;
   std::vector<FrameWriter> writers = {format.writer(out, records.size(), unit)};
   if (folder) writers.push_back(facts_writer(out, records.size()));
-  const std::uint64_t every = checkpoint_cadence(asks_of(run));
+  const std::uint64_t every = checkpoint_cadence(asks_of(run.places));
   MeasureSources sources(store);
   sources.read_run(run.stage.id);
   for (const CheckpointRecord& record : records) {
@@ -207,14 +201,14 @@ std::vector<std::string> write_records(const Store& store, const PlacedRun& run,
 
 /// Writes the run to `out` and returns the names of the files. `out` must not exist, unless it is
 /// an earlier crate of the run. A measure that needs an unreadable earlier checkpoint is NaN, and
-/// `unread` reports that checkpoint. Throws std::invalid_argument if the run cannot be exported,
-/// and FilePruned if the end of the run cannot be determined without a pruned checkpoint.
+/// `unread` reports that checkpoint. Throws NothingToExport, and
+/// FilePruned if the end of the run cannot be determined without a pruned checkpoint.
 std::vector<std::string> write_run(const Store& store, const PlacedRun& run,
                                    const ExportFormat& format, const ExportOptions& options,
                                    const fs::path& out, MeasureOutcome& unread) {
   for (;;) {
     std::vector<CheckpointRecord> records;
-    if (format.writer != nullptr) records = chosen(store, run, options);
+    if (format.writer != nullptr) records = chosen(store, run, options.cycles);
     try {
       return write_records(store, run, records, format, options, out, unread);
     } catch (const FilePruned&) {
@@ -243,21 +237,21 @@ void require_effect(const ExportOptions& options, const ExportFormat& format) {
   if (options.metres && options.format != "extxyz") refuse("--metres");
 }
 
-/// Returns the runs that the user named. If the user named no run, returns newest_runs() of the
-/// selection. Each run occurs once.
+/// Returns the runs that the user named, with all their places. If the user named no run, returns
+/// newest_runs() of the selection. Each run occurs once.
 std::vector<PlacedRun> wanted_runs(const Store& store, const ExportOptions& options) {
   parse_cycles(options.cycles);  // throws once here, instead of once for each run
   std::vector<PlacedRun> runs;
   for (const std::string& prefix : options.runs) {
     Stage stage = store.find_stage(prefix);
     const auto is_it = [&](const PlacedRun& other) { return other.stage.id == stage.id; };
-    if (std::ranges::none_of(runs, is_it)) runs.push_back({std::move(stage), {}});
+    if (std::ranges::none_of(runs, is_it)) runs.push_back({stage, stage.memberships});
   }
   if (!runs.empty()) return runs;
   const NewestRuns newest = newest_runs(select_runs(store, options.selection));
   for (const std::string& note : newest.notes) print_stderr("{}\n", note);
   runs = by_run(newest.runs);
-  if (runs.empty()) throw std::invalid_argument("no run of the store is selected");
+  if (runs.empty()) throw UsageError("no run of the store is selected");
   return runs;
 }
 
@@ -267,13 +261,11 @@ std::string entry_name(const PlacedRun& run, const ExportFormat& format) {
   std::string name =
       fmt::format("{}_{}_seed{}_{:.8}{}", place.experiment.substr(0, 64),
                   place.variant.substr(0, 100), place.seed, run.stage.id, format.ending);
-  std::ranges::replace_if(
-      name,
-      [](unsigned char c) {
-        return std::isalnum(c) == 0 &&
-               std::string("=.+-").find(static_cast<char>(c)) == std::string::npos;
-      },
-      '_');
+  const auto is_unfit = [](unsigned char c) {
+    return std::isalnum(c) == 0 &&
+           std::string_view("=.+-").find(static_cast<char>(c)) == std::string_view::npos;
+  };
+  std::ranges::replace_if(name, is_unfit, '_');
   return name;
 }
 
@@ -298,7 +290,7 @@ std::vector<Exported> write_all(const Store& store, const std::vector<PlacedRun>
              write_run(store, runs.front(), format, options, out, unread)}};
   }
   const bool folder = !single || is_folder(format), stream = is_stream(options.out);
-  if (folder && stream) throw std::invalid_argument("--out: " + unfit_folder("-"));
+  if (folder && stream) throw UsageError("--out: " + unfit_folder("-"));
   if (!stream) require_new(out, folder);
   if (!stream) fs::create_directories(out.parent_path());
   const TemporaryFolder stage(
@@ -312,7 +304,7 @@ std::vector<Exported> write_all(const Store& store, const std::vector<PlacedRun>
     try {
       auto files = write_run(store, run, format, options, single ? staged : staged / name, unread);
       done.push_back({run.stage.id, single ? fs::path(options.out) : out / name, std::move(files)});
-    } catch (const std::invalid_argument& problem) {  // the run has no checkpoint in these cycles
+    } catch (const NothingToExport& problem) {
       if (single || (&run == &runs.back() && done.empty())) throw;
       print_stderr("left out: {}\n", problem.what());
     }
@@ -330,16 +322,10 @@ void export_runs(const ExportOptions& options, Context& context) {
   const Store store(context.store, Access::read);
   const ExportFormat& format = *std::ranges::find(kFormats, options.format, &ExportFormat::name);
   require_effect(options, format);
-  std::vector<Exported> done;
-  bool single = false;
   MeasureOutcome unread;
-  try {
-    const std::vector<PlacedRun> runs = wanted_runs(store, options);
-    single = !options.runs.empty() && runs.size() == 1;
-    done = write_all(store, runs, format, options, single, unread);
-  } catch (const std::invalid_argument& problem) {
-    throw UsageError(problem.what());
-  }
+  const std::vector<PlacedRun> runs = wanted_runs(store, options);
+  const bool single = !options.runs.empty() && runs.size() == 1;
+  const std::vector<Exported> done = write_all(store, runs, format, options, single, unread);
   print_problems(unread, "not measured", context);
   if (is_stream(options.out)) return;
   if (context.json) {

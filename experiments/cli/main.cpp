@@ -122,24 +122,21 @@ std::string describe_extras(const CLI::App& app) {
     at = at->get_subcommands().front();
   }
   const std::vector<std::string> words = at->remaining();
-  const std::string problem =
-      fmt::format("The following arguments were not expected: {}", fmt::join(words, " "));
+  const std::string first = words.empty() ? "" : words.front();
   std::vector<std::string> known;
-  if (!words.empty() && words.front().starts_with("--")) {
-    for (const CLI::Option* option : at->get_options()) {
-      for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
-    }
-  } else {
-    for (const CLI::App* command : at->get_subcommands({})) {
-      known.push_back(command->get_name());
-    }
+  for (const CLI::App* command : at->get_subcommands({})) known.push_back(command->get_name());
+  if (at == &app && !first.starts_with('-')) {
+    return fmt::format(
+        "There is no command {}; {}", first,
+        did_you_mean(first, std::vector<std::string_view>(known.begin(), known.end())));
+  }
+  for (const CLI::Option* option : at->get_options()) {
+    for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
   }
   const std::vector<std::string_view> names(known.begin(), known.end());
-  if (at == &app && !words.empty() && !words.front().starts_with('-')) {
-    return fmt::format("There is no command {}; {}", words.front(),
-                       did_you_mean(words.front(), names));
-  }
-  return words.empty() ? problem : with_nearest(problem, words.front(), names);
+  return with_nearest(
+      fmt::format("The following arguments were not expected: {}", fmt::join(words, " ")), first,
+      names);
 }
 
 // Corrects inherited settings. If a standard stream were closed, the next opened file would get the

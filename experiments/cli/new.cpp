@@ -1,18 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // `new`: writes a commented manifest with every key of the schema.
 #include <fmt/format.h>
-#include <fmt/ranges.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <sstream>
-#include <system_error>
 
-#include "analysis/figure.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/manifest/manifest.hpp"
 #include "experiments/manifest/schema.hpp"
-#include "experiments/manifest/shipped.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/io/child_process.hpp"
 #include "provenance/io/file.hpp"
@@ -21,37 +16,15 @@
 namespace shearcell::cli {
 namespace {
 
-/// Wraps the text into comment lines of at most 90 columns.
-std::string commented(const std::string& text) {
-  const std::string begin = "  #";
-  std::string lines, line = begin;
-  std::istringstream words(text);
-  for (std::string word; words >> word;) {
-    if (line != begin && line.size() + 1 + word.size() > 90) {
-      lines += line + "\n";
-      line = begin;
-    }
-    line += " " + word;
-  }
-  return lines + line + "\n";
-}
-
 /// Returns comment lines: the meaning of the key, and below it the key with its default value.
 std::string entry(const Field& field) {
   std::string about(field.doc);
   if (!field.symbol.empty()) about += fmt::format("; {} in the supplement", field.symbol);
   about += fmt::format("; {}", expected_values(field));
-  return commented(about) + fmt::format("  # {}: {}\n", field.name, value_text(field.get({})));
-}
-
-std::string figure_comments() {
-  std::string text = "# Figures, and (in parentheses) the keys that the experiment must vary:\n";
-  for (const Figure& figure : all_figures()) {
-    if (figure.keys.empty()) continue;
-    text += fmt::format("#   {:<10} {} ({})\n", figure.name, figure.title,
-                        fmt::join(figure.keys, ", "));
-  }
-  return text;
+  std::istringstream lines(filled(about, 86));
+  std::string text;
+  for (std::string line; std::getline(lines, line);) text += "  # " + line + "\n";
+  return text + fmt::format("  # {}: {}\n", field.name, value_text(field.get({})));
 }
 
 std::string text_of(const std::string& experiment) {
@@ -60,7 +33,8 @@ std::string text_of(const std::string& experiment) {
 # `shearcell plan FILE --scale smoke` checks this file and lists its runs.
 experiment: {}
 question: What is to be found out?
-{}figures: [S2]
+# `shearcell figures --help` lists the figures and the keys that they compare.
+figures: [S2]
 # Your own plots and claims (see `shearcell manual`):
 # plots:
 #   - {{name: compaction, y: phi, x: cycle, show: traces}}
@@ -73,7 +47,7 @@ base:
   amplitude_rad: {}
 
 )",
-      experiment, figure_comments(), Parameters{}.grains, Parameters{}.amplitude_rad);
+      experiment, Parameters{}.grains, Parameters{}.amplitude_rad);
   for (const Field& field : schema()) {
     if (field.name != "grains" && field.name != "amplitude_rad") text += entry(field);
   }
@@ -105,27 +79,6 @@ scales:
 )";
 }
 
-/// Writes a temporary file and then links it as `file`, so that `file` is never incomplete and no
-/// existing file is replaced.
-void write_new(const std::filesystem::path& file, const std::string& text) {
-  const std::filesystem::path whole =
-      file.parent_path() / fmt::format(".{}.tmp-{}-0", file.filename().string(), getpid());
-  std::error_code failed, ignored;
-  try {
-    write_output(whole, text);
-    std::filesystem::create_hard_link(whole, file, failed);
-    std::filesystem::remove(whole, ignored);
-    // The link failed: the file exists (NewFile throws), or hard links are not supported.
-    if (failed) NewFile(file).add(text);
-  } catch (const std::system_error& error) {
-    if (error.code() != std::errc::file_exists) {
-      throw std::system_error(error.code(), file.string() + ": cannot write");
-    }
-    throw UsageError(file.string() +
-                     ": the file already exists. Choose another name, or remove the file.");
-  }
-}
-
 void make(const std::string& name, Context&) {
   std::filesystem::path file = name;
   const bool whole = file.extension() == ".yaml" || file.extension() == ".yml";
@@ -139,7 +92,11 @@ void make(const std::string& name, Context&) {
   }
   const std::string text = text_of(experiment);
   parse_manifest(text, file.string());  // throws if text_of() is not a valid manifest
-  write_new(file, text);
+  if (exists(symlink_status(file))) {
+    throw UsageError(file.string() +
+                     ": the file already exists. Choose another name, or remove the file.");
+  }
+  write_output(file, text);
   print_text("{}: written. Next: shearcell plan {} --scale smoke\n", file.string(),
              shell_word(file.string()));
 }

@@ -31,29 +31,17 @@ std::string state_of(const Line& line) {
   return line.look.missing.empty() ? "to extend" : "to replay";
 }
 
-// Number of cycles after which the stage is complete, unless an `until` ends it earlier.
-double cycles_of(const Line& line) {
-  return std::max(static_cast<double>(line.run->ask.target_cycles), line.look.end);
-}
-
-std::vector<std::string> shared_with(const Line& line) {
-  std::vector<std::string> others;
-  for (const Membership& m : line.memberships) {
-    const std::string& other = m.place.experiment;
-    const bool known = std::ranges::count(others, other) > 0;
-    if (other != line.run->place.experiment && !known) others.push_back(other);
-  }
-  return others;
+bool is_packing(const Line& line) {
+  return line.stage.kind == name_of(StageKind::prepare);
 }
 
 const Parameters& parameters_of(const Line& line) {
-  const bool packing = line.stage.kind == name_of(StageKind::prepare);
-  return packing ? line.run->packing : line.run->parameters;
+  return is_packing(line) ? line.run->packing : line.run->parameters;
 }
 
 std::optional<TimeStep> time_step_of(const Line& line) {
   const Parameters& p = parameters_of(line);
-  if (line.stage.kind == name_of(StageKind::prepare)) return time_step(p, p.settle_time_step_s);
+  if (is_packing(line)) return time_step(p, p.settle_time_step_s);
   if (line.stage.kind == name_of(StageKind::stiffen)) return std::nullopt;
   return time_step(p, shear_time_step_s(p));
 }
@@ -66,9 +54,7 @@ nlohmann::json facts(const std::optional<TimeStep>& step) {
 }
 
 std::string shown_name(const Line& line, const VariantNames& names) {
-  return line.stage.kind == name_of(StageKind::prepare)
-             ? names.of(line.stage, line.memberships.back().place)
-             : line.run->name;
+  return is_packing(line) ? names.of(line.stage, line.memberships.back().place) : line.run->name;
 }
 
 void print_numerics(const std::vector<Line>& lines, const VariantNames& names) {
@@ -100,10 +86,8 @@ const std::vector<std::string> kLammpsCaveats = {
     "fail if the centre of a grain reaches the plane of a wall."};
 
 std::vector<std::string> notes_of(const std::vector<Plan>& plans, const std::vector<Line>& lines) {
-  std::vector<std::string> notes;
-  for (const Plan& plan : plans) {
-    if (!plan.read.empty()) notes.push_back(plan.read);
-  }
+  std::vector<std::string> notes = list_of(plans, [](const Plan& plan) { return plan.read; });
+  std::erase(notes, "");
   double most = 0;
   for (const Line& line : lines) {
     most = std::max(most, run_bytes(geometry(line.run->parameters)));
@@ -230,9 +214,11 @@ VariantNames names_of(const std::vector<Plan>& plans, const std::vector<Line>& l
 
 Facts facts(const Line& line, const VariantNames& names, bool of_several_experiments) {
   const PlannedRun& run = *line.run;
-  const bool prepare = line.stage.kind == name_of(StageKind::prepare);
-  const double cycles = cycles_of(line);
-  const std::vector<std::string> others = shared_with(line);
+  // The stage is complete after `cycles`, unless an `until` ends it earlier.
+  const double cycles = std::max(static_cast<double>(run.ask.target_cycles), line.look.end);
+  std::set<std::string> others;
+  for (const Membership& m : line.memberships) others.insert(m.place.experiment);
+  others.erase(run.place.experiment);
   Facts all = {{"id", line.stage.id, "run", line.stage.id.substr(0, 8)},
                {"stage", line.stage.kind, "stage"},
                {"experiment", run.place.experiment},
@@ -240,7 +226,7 @@ Facts facts(const Line& line, const VariantNames& names, bool of_several_experim
                {"seed", run.place.seed, "seed"},
                {"N", run.parameters.grains, "N"},
                {"cycles", static_cast<std::uint64_t>(cycles), "cycle",
-                prepare ? "" : fmt::format("{:.4g}/{}", line.stage.cycle, cycles)},
+                is_packing(line) ? "" : fmt::format("{:.4g}/{}", line.stage.cycle, cycles)},
                {"state", state_of(line), "state"},
                {"shared_with", others, "",
                 others.empty() ? "" : fmt::format("also in {}", fmt::join(others, ", "))},
@@ -273,7 +259,7 @@ void plan(const PlanOptions& options, Context& context) {
   std::set<const PlannedRun*> left_runs;  // unfinished runs; one core computes each run
   std::size_t runs_planned = 0, longer = 0;
   for (const Line& line : lines) {
-    runs_planned += line.stage.kind == name_of(StageKind::prepare) ? 0 : 1;
+    runs_planned += is_packing(line) ? 0 : 1;
     if (!line.look.done) left_runs.insert(line.run);
     const auto asks_more = [&](const Membership& m) {  // an earlier command requested more cycles
       return m.ask.target_cycles > line.run->ask.target_cycles;

@@ -10,6 +10,7 @@
 #include <functional>
 #include <optional>
 #include <set>
+#include <tuple>
 #include <utility>
 
 #include "core/machine.hpp"
@@ -51,20 +52,6 @@ void require_lammps_for_ranks(const RunOptions& options, bool lammps) {
   throw CLI::ValidationError("--mpi", "has no effect, because no run uses LAMMPS. Omit --mpi");
 }
 
-void require_lammps(const RunOptions& options, const std::vector<Plan>& plans) try {
-  find_lammps(options.parallel.ranks);
-} catch (const ProgramError& missing) {
-  const auto is_ours = [](const PlannedRun& run) {
-    return run.parameters.engine == EngineKind::shearcell;
-  };
-  const bool others = std::ranges::any_of(plans, [&](const Plan& plan) {
-    return asks_for_lammps(plan) && std::ranges::any_of(plan.runs, is_ours);
-  });
-  if (!others) throw;
-  throw ProgramError(std::string(missing.what()) +
-                     ". `--variant engine=shearcell` computes only runs that do not need LAMMPS");
-}
-
 // Number of runs to compute at a time. By default, all cores are used.
 std::size_t workers(const RunOptions& options) {
   if (options.jobs > 0) return options.jobs;
@@ -91,14 +78,14 @@ CampaignResult compute(Store& store, const std::vector<StageJob>& jobs, const Ru
   return result;
 }
 
-// Prints the result and sets the exit code. `failed_before`: whether --leave-failed skipped a run.
-void print_result(const CampaignResult& result, bool failed_before, Context& context) {
+// Prints the result and sets the exit code.
+void print_result(const CampaignResult& result, Context& context) {
   const bool interrupted = result.interrupted > 0 || (stop_requested() && result.blocked > 0);
   fail(context, result.damaged > 0   ? kStoreDamaged
                 : result.failed > 0  ? kRunFailed
                 : interrupted        ? kInterrupted
                 : result.blocked > 0 ? kOtherError
-                : failed_before      ? kRunFailed
+                : result.left_failed ? kRunFailed
                                      : kDone);
   if (context.json) {
     print_json({{"completed", result.completed},
@@ -111,23 +98,17 @@ void print_result(const CampaignResult& result, bool failed_before, Context& con
                 {"files_deleted", result.files_deleted},
                 {"messages", result.messages},
                 {"warnings", context.warnings}});
-  } else if (result.completed + result.already + result.elsewhere + result.failed +
-                 result.interrupted + result.blocked + result.damaged ==
-             0) {
+  } else if (result == CampaignResult{.left_failed = result.left_failed}) {
     fmt::print("nothing is left to compute\n");
   } else {
     fmt::print("{} computed, {} done already, {} failed, {} interrupted, {} not started\n",
                counted(result.completed, "stage"), result.already, result.failed,
                result.interrupted, result.blocked);
-    if (result.elsewhere > 0) {
-      fmt::print("{} computed by other processes in the meantime\n",
-                 counted(result.elsewhere, "stage"));
-    }
-    if (result.files_deleted > 0) {
-      fmt::print("{} deleted by --keep-every\n", counted(result.files_deleted, "file"));
-    }
-    if (result.damaged > 0) {
-      fmt::print("{} stopped by damaged files in the store\n", counted(result.damaged, "stage"));
+    for (const auto& [number, one, what] :
+         {std::tuple(result.elsewhere, "stage", "computed by other processes in the meantime"),
+          {result.files_deleted, "file", "deleted by --keep-every"},
+          {result.damaged, "stage", "stopped by damaged files in the store"}}) {
+      if (number > 0) fmt::print("{} {}\n", counted(number, one), what);
     }
   }
   if (interrupted) {
@@ -141,7 +122,7 @@ void run(const RunOptions& options, Context& context) {
   const std::vector<Plan> plans = load_plans(options.inputs, options.expand, context);
   const bool lammps = std::ranges::any_of(plans, asks_for_lammps);
   require_lammps_for_ranks(options, lammps);
-  if (lammps) require_lammps(options, plans);
+  if (lammps) find_lammps(options.parallel.ranks);  // throws if it is not installed
   Store store(context.store, Access::create);
   std::vector<StageJob> jobs;
   std::set<std::string> known;
@@ -151,7 +132,7 @@ void run(const RunOptions& options, Context& context) {
       if (known.insert(job.id).second) jobs.push_back(std::move(job));
     }
   }
-  print_result(compute(store, jobs, options, context), false, context);
+  print_result(compute(store, jobs, options, context), context);
 }
 
 // Removes jobs of failed stages and jobs that depend on them. Returns whether a job was removed.
@@ -165,27 +146,16 @@ bool leave_failed(Store& store, std::vector<StageJob>& jobs) {
   return !left.empty();
 }
 
-// Computes the unfinished stages. Sets `failed_before` to whether --leave-failed skipped a run.
-CampaignResult compute_rest(Store& store, const RunOptions& options, bool& failed_before,
-                            Context& context) {
+CampaignResult compute_rest(Store& store, const RunOptions& options, Context& context) {
   std::vector<StageJob> jobs = stages_to_resume(store, options.inputs);
-  if (options.leave_failed) failed_before = leave_failed(store, jobs);
+  const bool left_failed = options.leave_failed && leave_failed(store, jobs);
   const auto by_lammps = [&](const StageJob& job) {
     return engine_of(store.stage(job.id).resolved) == EngineKind::lammps;
   };
   require_lammps_for_ranks(options, jobs.empty() || std::ranges::any_of(jobs, by_lammps));
-  return compute(store, jobs, options, context);
-}
-
-// Wraps an action for Repeated: errors are printed, and the next repetition tries again.
-std::function<void()> tried(std::function<void()> action, std::chrono::seconds interval) {
-  return [interval, action = std::move(action)] {
-    try {
-      action();
-    } catch (const std::exception& problem) {
-      print_stderr("shearcell: {}; will try again in {} s\n", problem.what(), interval.count());
-    }
-  };
+  CampaignResult result = compute(store, jobs, options, context);
+  result.left_failed = left_failed;
+  return result;
 }
 
 // Returns the folder in which the task computes: its store, or if `scratch` is set, a copy on the
@@ -216,14 +186,16 @@ void resume_task(const RunOptions& options, Context& context) {
     Store own(task, Access::write);
     merge_stores(own, {folder}, runs);
   };
+  const auto complain = [](const std::exception& problem) {
+    print_stderr("shearcell: {}; will try again\n", problem.what());
+  };
   CampaignResult result;
-  bool failed_before = false;
   {
     report();
-    const Repeated reports(kReportEvery, tried(report, kReportEvery));
+    const Repeated reports(kReportEvery, report, complain);
     std::optional<Repeated> saves;
-    if (is_copy) saves.emplace(kSaveEvery, tried(save, kSaveEvery));
-    result = compute_rest(*store, options, failed_before, context);
+    if (is_copy) saves.emplace(kSaveEvery, save, complain);
+    result = compute_rest(*store, options, context);
   }
   report();
   if (is_copy) {
@@ -231,7 +203,7 @@ void resume_task(const RunOptions& options, Context& context) {
     store.reset();
     fs::remove_all(folder);
   }
-  print_result(result, failed_before, context);
+  print_result(result, context);
   // A task that was stopped before its end is restarted later, even if some runs have failed.
   if (stop_requested() && result.interrupted + result.blocked > 0) {
     context.exit_code = kInterrupted;
@@ -241,9 +213,7 @@ void resume_task(const RunOptions& options, Context& context) {
 void resume_runs(const RunOptions& options, Context& context) {
   if (options.task) return resume_task(options, context);
   Store store(context.store, Access::write);
-  bool failed_before = false;
-  const CampaignResult result = compute_rest(store, options, failed_before, context);
-  print_result(result, failed_before, context);
+  print_result(compute_rest(store, options, context), context);
 }
 
 void add_worker_options(CLI::App& command, RunOptions& options) {

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <ranges>
 #include <set>
 #include <utility>
 #include <vector>
@@ -160,23 +161,21 @@ Facts facts_of_id(const Stage& stage) {
 }
 
 void show_run(const Store& store, const Stage& stage, Context& context) {
-  const std::vector<CheckpointRecord> checkpoints = store.checkpoints(stage.id, Listed::all);
-  const Facts facts = facts_of(store, stage);
+  const std::vector<CheckpointRecord> records = store.checkpoints(stage.id, Listed::all);
+  const Facts facts = facts_of(store, stage), measures = newest_measures(store, records, context);
   if (context.json) {
     nlohmann::json all = to_json(facts);
-    all["checkpoints"] = to_json(facts_of_all(store, stage, checkpoints));
-    all["measures"] = to_json(newest_measures(store, checkpoints, context));
+    all["checkpoints"] = to_json(facts_of_all(store, stage, records));
+    all["measures"] = to_json(measures);
     return print_json(all);
   }
   print_lines(facts);
   print_text("\n");
   print_lines(facts_of_id(stage));
   print_text("\n");
-  print_table(list_of(checkpoints, [](const CheckpointRecord& c) { return facts_of(c); }));
-  if (const Facts measures = newest_measures(store, checkpoints, context); !measures.empty()) {
-    print_text("\nnewest checkpoint:\n");
-    print_lines(measures);
-  }
+  print_table(list_of(records, [](const CheckpointRecord& c) { return facts_of(c); }));
+  if (!measures.empty()) print_text("\nnewest checkpoint:\n");
+  print_lines(measures);
 }
 
 /// Prints the checkpoint and its measures. If the file was pruned, prints the recorded
@@ -225,13 +224,6 @@ void say(std::string_view heading, fmt::format_string<Arguments...> format,
   print_text("{}\n", without_controls(fmt::format("{:<12} {}", heading, text)));
 }
 
-// Shortens a time: "2026-11-20T21:40:51.123Z" becomes "2026-11-20 21:40:51".
-std::string moment(const std::string& utc) {
-  std::string text = utc.substr(0, 19);
-  std::replace(text.begin(), text.end(), 'T', ' ');
-  return text;
-}
-
 // Gives each build and each host a number, so that the lines of attempts are short.
 class Makers {
   using Lines = std::vector<std::string>;
@@ -239,16 +231,15 @@ class Makers {
  public:
   std::string number(const nlohmann::json& host) {
     const Maker maker = maker_of(host);
-    return fmt::format("build {}, host {}",
-                       number(builds_, {maker.program, maker.flags,
-                                        fmt::format("{}", fmt::join(maker.libraries, ", "))}),
-                       number(hosts_, {maker.host + ", " + maker.system, maker.machine}));
+    return name("build",
+                {maker.program, maker.flags, fmt::format("{}", fmt::join(maker.libraries, ", "))}) +
+           ", " + name("host", {maker.host + ", " + maker.system, maker.machine});
   }
   void print() const {
-    for (const auto& [what, all] : {std::pair("build", &builds_), {"host", &hosts_}}) {
-      for (std::size_t k = 0; k < all->size(); ++k) {
+    for (const auto& [what, all] : known_) {
+      for (std::size_t k = 0; k < all.size(); ++k) {
         std::string name = fmt::format("{} {}", what, k + 1);
-        for (const std::string& line : all->at(k)) {
+        for (const std::string& line : all[k]) {
           if (!line.empty()) say(std::exchange(name, ""), "{}", line);
         }
       }
@@ -256,13 +247,14 @@ class Makers {
   }
 
  private:
-  static std::size_t number(std::vector<Lines>& known, const Lines& lines) {
+  std::string name(const std::string& what, const Lines& lines) {
+    std::vector<Lines>& known = known_[what];
     const auto found = std::ranges::find(known, lines);
-    const auto place = static_cast<std::size_t>(found - known.begin());
+    const auto place = found - known.begin();
     if (found == known.end()) known.push_back(lines);
-    return place + 1;
+    return fmt::format("{} {}", what, place + 1);
   }
-  std::vector<Lines> builds_, hosts_;  // the lines to print for each build and host
+  std::map<std::string, std::vector<Lines>> known_;  // "build" and "host": the lines to print
 };
 
 void print_manifests(const FigureLineage& lineage) {
@@ -283,7 +275,7 @@ void print_stage(const RunLineage& stage, const std::vector<std::string>& checkp
                  Makers& makers) {
   std::size_t number = 0;
   for (const Attempt& attempt : stage.attempts) {
-    say(fmt::format("  attempt {}", ++number), "{}  {}, {}", moment(attempt.started_at),
+    say(fmt::format("  attempt {}", ++number), "{:.19}  {}, {}", attempt.started_at,
         name_of(attempt.outcome), makers.number(attempt.host));
     if (!attempt.why.empty()) say("", "{}", attempt.why);
     if (!attempt.from_checkpoint.empty()) say("  from", "{}", attempt.from_checkpoint);
@@ -321,7 +313,7 @@ void print(const FigureLineage& lineage, bool list) {
   const nlohmann::json made = member_of(recorded, "made");
   say("figure", "{}, analysis version {}", lineage.record.name,
       text_at(recorded, "analysis_version"));
-  say("made", "{} UTC, event {}{}", moment(lineage.record.recorded_at), lineage.record.seq,
+  say("made", "{:.19} UTC, event {}{}", lineage.record.recorded_at, lineage.record.seq,
       made.is_object() ? ", " + makers.number(made) : "");
   if (!lineage.plots.empty()) say("  plots", "{}", lineage.plots);
   for (const auto& [name, sha256] : lineage.outputs) say("  file", "{}  {}", sha256, name);
@@ -422,21 +414,12 @@ std::optional<FigureRecord> find_record(const Store& store, const std::string& n
     const auto [known, first] = found.try_emplace(path, figure);
     if (!first && known->second.seq < figure.seq) known->second = std::move(figure);
   }
-  std::vector<std::string> paths;
-  for (const auto& [path, figure] : found) paths.push_back(path);
-  if (paths.size() > 1) {
-    throw NotFound(fmt::format("several figures are called {}: {}", name, fmt::join(paths, ", ")));
+  if (found.empty()) return std::nullopt;
+  if (found.size() > 1) {
+    throw NotFound(fmt::format("several figures are called {}: {}", name,
+                               fmt::join(std::views::keys(found), ", ")));
   }
-  if (paths.empty()) return std::nullopt;
   return std::move(found.begin()->second);
-}
-
-// Throws NotFound if the name, such as "S4" or "drag/desk/S4", means a figure that was not drawn.
-void require_not_undrawn(const std::string& name) {
-  const std::string figure = std::filesystem::path(name).filename().string();
-  if (find_figure(figure) == nullptr || std::filesystem::exists(name)) return;
-  throw NotFound(
-      fmt::format("figure {} has not been drawn; run `shearcell figures {}`", name, figure));
 }
 
 /// Throws NotFound if `name` is an experiment, since `show` shows only one run, or if `name` is
@@ -470,7 +453,11 @@ void show(const ShowOptions& options, Context& context) {
   const Store store(context.store, Access::read);
   if (const auto figure = find_record(store, name))
     return show_figure(store, *figure, list, context);
-  require_not_undrawn(name);
+  const std::string last = std::filesystem::path(name).filename().string();
+  if (find_figure(last) != nullptr && !std::filesystem::exists(name)) {
+    throw NotFound(
+        fmt::format("figure {} has not been drawn; run `shearcell figures {}`", name, last));
+  }
   // A name with a dot or a slash is a file, since ids of runs and checkpoints have neither.
   if (name.find_first_of("./") != std::string::npos)
     return show_published(store, name, list, context);

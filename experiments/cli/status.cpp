@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <map>
-#include <optional>
 
 #include "core/machine.hpp"
 #include "experiments/cli/command.hpp"
@@ -147,19 +146,20 @@ Facts facts(const PlacedRun& listed, const Membership& shown, const View& view) 
   return all;
 }
 
-/// The remaining work, and the time that this work will take at the mean speed so far.
+/// The remaining work, and the time that this work will take at the mean speed so far. Stages that
+/// failed or cannot start are left out.
 struct Estimate {
+  std::string problem;  ///< why the work is unknown: this version cannot read a record; or ""
   Work work;
   std::size_t at_a_time = 1;  ///< number of stages computed at a time
   bool running = false;       ///< whether a run is computed now; if not, the time is for all cores
   bool at_most = false;       ///< the time is an upper limit: `until` may end runs early
 
+  bool any() const { return problem.empty() && work.stages > 0; }
   double seconds() const { return work.seconds(at_a_time); }
 };
 
-/// Estimates the remaining work, without stages that failed or cannot start. Returns nothing if no
-/// work is left. Also returns nothing, and sets `problem`, if this version cannot read a record.
-std::optional<Estimate> estimate(const View& view, std::string& problem) {
+Estimate estimate(const View& view) {
   const Rates rates(view.store.stages());
   std::size_t running = 0;
   Estimate made;
@@ -171,14 +171,13 @@ std::optional<Estimate> estimate(const View& view, std::string& problem) {
     const Outlook look = look_at(view.store, stage);
     if (look.done) continue;
     if (!look.unreadable.empty()) {
-      problem = fmt::format("run {:.8}: {}; `shearcell verify` checks the store", stage.id,
-                            look.unreadable);
-      return std::nullopt;
+      made.problem = fmt::format("run {:.8}: {}; `shearcell verify` checks the store", stage.id,
+                                 look.unreadable);
+      return made;
     }
     made.at_most = made.at_most || look.may_end_early;
     made.work.add(stage, look, rates);
   }
-  if (made.work.stages == 0) return std::nullopt;
   made.running = running > 0;
   made.at_a_time = std::min(made.running ? running : usable_cores(), made.work.stages);
   return made;
@@ -189,18 +188,25 @@ std::string local_time(double seconds_from_now) {
   return fmt::format("{:%F %R %Z}", fmt::localtime(static_cast<std::time_t>(then)));
 }
 
-nlohmann::json facts(const std::optional<Estimate>& estimate) {
-  if (!estimate) return nullptr;
-  return {{"stages_left", estimate->work.stages},
-          {"particle_steps_left", estimate->work.particle_steps},
-          {"seconds_left", estimate->seconds()},
-          {"at_a_time", estimate->at_a_time},
-          {"running", estimate->running},
-          {"at_most", estimate->at_most},
-          {"rate_measured", estimate->work.measured}};
+nlohmann::json facts(const Estimate& left) {
+  if (!left.any()) return nullptr;
+  return {{"stages_left", left.work.stages},
+          {"particle_steps_left", left.work.particle_steps},
+          {"seconds_left", left.seconds()},
+          {"at_a_time", left.at_a_time},
+          {"running", left.running},
+          {"at_most", left.at_most},
+          {"rate_measured", left.work.measured}};
+}
+
+/// The text, or null if it is empty.
+nlohmann::json text_or_null(const std::string& text) {
+  return text.empty() ? nlohmann::json() : nlohmann::json(text);
 }
 
 void print(const Estimate& left) {
+  if (!left.problem.empty()) print_text("The remaining work is unknown: {}\n", left.problem);
+  if (!left.any()) return;
   print_text("left: {}, {:.3g} particle-steps, {} {}, computing {} at a time{}\n",
              counted(left.work.stages, "stage"), left.work.particle_steps,
              left.at_most ? "at most" : "about", format_duration(left.seconds()), left.at_a_time,
@@ -209,20 +215,18 @@ void print(const Estimate& left) {
 }
 
 void print_tables(const View& view) {
-  std::vector<std::string> experiments;
-  std::map<std::string, std::vector<Facts>> tables;
+  nlohmann::ordered_map<std::string, std::vector<Facts>> tables;
   std::map<StageState, std::size_t> count;
   for (const PlacedRun& listed : view.runs) {
     ++count[progress_of(listed.stage, view).first];
     for (const Membership& shown : listed.places) {
       const std::string name = shown.place.experiment + at_scale(shown.place.scale);
-      if (!tables.contains(name)) experiments.push_back(name);
       tables[name].push_back(facts(listed, shown, view));
     }
   }
-  for (const std::string& name : experiments) {
+  for (const auto& [name, rows] : tables) {
     print_text("{}\n", name);
-    print_table(tables[name]);
+    print_table(rows);
     print_text("\n");
   }
   std::string all;
@@ -234,9 +238,7 @@ void print_tables(const View& view) {
 
 void print(const View& view) {
   print_tables(view);
-  std::string unknown;
-  if (const auto left = estimate(view, unknown)) print(*left);
-  if (!unknown.empty()) print_text("The remaining work is unknown: {}\n", unknown);
+  print(estimate(view));
   const auto waiting = std::ranges::count_if(view.runs, [&](const PlacedRun& one) {
     return one.stage.state != StageState::failed && has_failed(view.store, one.stage);
   });
@@ -263,15 +265,13 @@ void print(const View& view) {
 void status(const RunSelection& selection, Context& context) {
   const View view(selection, context);
   if (!context.json) return print(view);
-  const std::string& problem = view.queue.problem;
-  std::string unknown;
-  const std::optional<Estimate> left = estimate(view, unknown);
+  const Estimate left = estimate(view);
   print_json({{"runs", list_of(view.runs,
                                [&](const PlacedRun& run) {
                                  return to_json(facts(run, run.places.front(), view));
                                })},
               {"estimate", facts(left)},
-              {"estimate_problem", unknown.empty() ? nlohmann::json() : nlohmann::json(unknown)},
+              {"estimate_problem", text_or_null(left.problem)},
               {"submissions", list_of(view.queue.submissions,
                                       [](const Submission& open) -> nlohmann::json {
                                         return {{"id", open.id},
@@ -280,7 +280,7 @@ void status(const RunSelection& selection, Context& context) {
                                                 {"tasks", open.tasks.size()},
                                                 {"in_queue", open.queue.size()}};
                                       })},
-              {"queue_problem", problem.empty() ? nlohmann::json() : nlohmann::json(problem)}});
+              {"queue_problem", text_or_null(view.queue.problem)}});
 }
 
 }  // namespace

@@ -133,13 +133,6 @@ void queue_jobs(Store& store, const Submission& submission, Result& result, Cont
                             folder.string());
 }
 
-json event_facts(const std::vector<Plan>& plans) {
-  const auto sha = [](const Plan& plan) { return sha256_hex(plan.manifest.text); };
-  return {{"scheduler", "slurm"},
-          {"manifests", list_of(plans, sha)},
-          {"scales", list_of(plans, [](const Plan& plan) { return plan.scale; })}};
-}
-
 /// Merges results of earlier submissions that no job has merged, for example after `scancel`. Then
 /// declares the runs of the plans.
 void prepare(Store& store, const std::vector<Submission>& open, const std::vector<Plan>& plans) {
@@ -193,7 +186,11 @@ void submit(const SubmitOptions& options, Context& context) {
   if (options.dry_run && !result.proposal.shares.empty()) {
     show_jobs(folder, result);
   } else if (!result.proposal.shares.empty()) {
-    const Submission made = prepare_submission(*store, result.proposal, event_facts(plans), seen);
+    const auto sha = [](const Plan& plan) { return sha256_hex(plan.manifest.text); };
+    const json event = {{"scheduler", "slurm"},
+                        {"manifests", list_of(plans, sha)},
+                        {"scales", list_of(plans, [](const Plan& plan) { return plan.scale; })}};
+    const Submission made = prepare_submission(*store, result.proposal, event, seen);
     queue_jobs(*store, made, result, context);
   }
   print(result, context);

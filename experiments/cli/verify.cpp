@@ -18,7 +18,7 @@ namespace shearcell::cli {
 namespace {
 
 struct VerifyOptions {
-  std::vector<std::string> against;
+  std::vector<std::string> against;  ///< number and hash of an event
   std::size_t replay = 0;
   std::size_t measures = 8;
   std::optional<std::uint64_t> seed;
@@ -30,18 +30,14 @@ const char* name_of_severity(const Finding& finding) {
   return finding.severity == error ? "error" : finding.severity == note ? "note" : "not checked";
 }
 
-// Reads a head (number and hash of an event): "16 ab12...", "16" and "ab12...", or "16:ab12...".
 std::optional<Head> read_head(const std::vector<std::string>& words) {
   if (words.empty()) return std::nullopt;
-  const std::string text = fmt::format("{}", fmt::join(words, " "));
-  if (const auto gap = text.find_first_of(" :"); gap != std::string::npos) {
-    const auto seq = read_number<std::uint64_t>(std::string_view(text).substr(0, gap));
-    const std::string hash = text.substr(gap + 1);
-    if (seq && is_sha256_hex(hash)) return Head{*seq, hash};
-  }
-  throw CLI::ValidationError(
-      "--against",
-      "'" + text + "' is not a head; give the number and hash of an event as `verify` prints them");
+  const auto seq = read_number<std::uint64_t>(words.front());
+  if (seq && is_sha256_hex(words.back())) return Head{*seq, words.back()};
+  throw CLI::ValidationError("--against",
+                             fmt::format("'{}' is not a head; give the number and hash of an event "
+                                         "as `verify` prints them",
+                                         fmt::join(words, " ")));
 }
 
 nlohmann::json facts(const Replay& replay) {
@@ -138,10 +134,9 @@ nlohmann::json facts(const VerifyReport& report) {
 
 // Checks runs and cached measures, and adds findings to the report. Does nothing if the store is
 // damaged or a file cannot be read, because the checks read records and files.
-MeasureCheck audit(const VerifyOptions& options, Context& context, VerifyReport& report) {
+MeasureCheck audit(const Store& store, const VerifyOptions& options, VerifyReport& report) {
   MeasureCheck measures;
   if (!report.ok() || report.count(Finding::Severity::unread) > 0) return measures;
-  const Store store(context.store, Access::read);
   for (Finding& finding : check_runs(store)) report.findings.push_back(std::move(finding));
   if (!report.ok()) return measures;
   measures = check_measures(store, store.folder(), options.measures,
@@ -185,8 +180,9 @@ void print(const VerifyReport& report, const MeasureCheck& measures) {
 
 void verify(const VerifyOptions& options, Context& context) {
   const std::optional<Head> against = read_head(options.against);
-  VerifyReport report = Store(context.store, Access::read).verify(against);
-  const MeasureCheck measures = audit(options, context, report);
+  const Store store(context.store, Access::read);
+  VerifyReport report = store.verify(against);
+  const MeasureCheck measures = audit(store, options, report);
   nlohmann::json all = facts(report);
   all["measures"] = {{"kept", measures.cached},
                      {"computed_again", measures.computed},
@@ -224,7 +220,7 @@ void add_verify(CLI::App& app, Context& context) {
   command
       ->add_option("--against", options->against,
                    "Number and hash of the last event, as an earlier `verify` printed them")
-      ->expected(1, 2)
+      ->expected(2)
       ->type_name("SEQ HASH");
   add_number(*command, "--replay", options->replay,
              "Recompute K sampled checkpoints and compare every bit", "K", 1, 1'000'000'000);

@@ -15,7 +15,6 @@
 #include "experiments/runner/measure.hpp"
 #include "experiments/runner/outlook.hpp"
 #include "experiments/runner/registered.hpp"
-#include "provenance/errors.hpp"
 #include "provenance/json_text.hpp"
 #include "provenance/words.hpp"
 
@@ -115,16 +114,12 @@ void weigh(const Store& store, std::vector<ChosenRun>& runs, Packings& packings)
       std::ranges::count_if(all, [](const Measure* one) { return !has_more_digits(*one); }));
   for (ChosenRun& run : runs) {
     while (!run.checkpoints.empty() && run.bytes == 0) {
-      try {
-        const Checkpoint last = store.load_checkpoint(run.checkpoints.back());
-        run.wall_grains = last.cell.wall_grains.size();
+      const auto read = [&](std::size_t) {
+        run.wall_grains = store.load_checkpoint(run.checkpoints.back()).cell.wall_grains.size();
         run.bytes = frame_size_in_page(run.stage.grains, run.wall_grains, fields) + kFactsInPage;
-      } catch (const StoreDamaged& damage) {
-        packings.damage.insert(damage.what());
-        run.checkpoints.pop_back();
-      } catch (const FilePruned&) {
-        run.checkpoints.pop_back();
-      }
+      };
+      packings += read_in_parallel(1, 1, read, {});
+      if (run.bytes == 0) run.checkpoints.pop_back();
     }
   }
   std::erase_if(runs, [](const ChosenRun& run) { return run.checkpoints.empty(); });
@@ -192,6 +187,20 @@ std::vector<GrainField> make_fields(const Measures& measures, std::size_t grains
   return fields;
 }
 
+/// {"key", "label", "unit", "low", "high"} or {"key", "label", "classes"}.
+json describe(const GrainField& field) {
+  const Measure& measure = *field.measure;
+  json described = {{"key", measure.name}, {"label", measure.words}};
+  if (!measure.scale.classes.empty()) {
+    described["classes"] = measure.scale.classes;
+  } else {
+    described.update({{"unit", measure.unit == "1" ? "" : measure.unit},
+                      {"low", field.low},
+                      {"high", field.high}});
+  }
+  return described;
+}
+
 json profile_json(const std::vector<double>& values, double unit = 1) {
   json list = json::array();
   for (const double value : values) list.push_back(rounded(value * unit, 6));
@@ -222,7 +231,7 @@ json make_frame(const CheckpointRecord& record, const MeasureSources& sources,
       make_fields(measures, analysis.grains.q6.size(), sources.facts(record.run));
   const EncodedFrame encoded = encode_frame(checkpoint, pose, analysis.grains, fields);
   json described = json::array();
-  for (const GrainField& field : fields) described.push_back(to_json(field));
+  for (const GrainField& field : fields) described.push_back(describe(field));
   return {{"name", frame_name(record)},
           {"cycle", record.cycle},
           {"sha256", record.sha256},
@@ -267,19 +276,6 @@ EncodedFrame encode_frame(const Checkpoint& checkpoint, const WallPose& pose,
     for (const double value : field.value) frame.bytes.push_back(byte_of(field, value));
   }
   return frame;
-}
-
-nlohmann::json to_json(const GrainField& field) {
-  const Measure& measure = *field.measure;
-  json described = {{"key", measure.name}, {"label", measure.words}};
-  if (!measure.scale.classes.empty()) {
-    described["classes"] = measure.scale.classes;
-  } else {
-    described.update({{"unit", measure.unit == "1" ? "" : measure.unit},
-                      {"low", field.low},
-                      {"high", field.high}});
-  }
-  return described;
 }
 
 std::size_t frame_size_in_page(std::size_t grains, std::size_t wall_grains, std::size_t fields) {

@@ -68,9 +68,6 @@ struct GrainField {
   std::vector<double> value = {};  ///< of each grain
 };
 
-/// {"key", "label", "unit", "low", "high"} or {"key", "label", "classes"}.
-nlohmann::json to_json(const GrainField& field);
-
 EncodedFrame encode_frame(const Checkpoint& checkpoint, const WallPose& pose,
                           const GrainMeasures& grains, std::span<const GrainField> fields = {});
 

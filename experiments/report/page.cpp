@@ -11,7 +11,6 @@
 #include <map>
 #include <optional>
 #include <span>
-#include <tuple>
 
 #include "analysis/error.hpp"
 #include "analysis/plot.hpp"
@@ -57,7 +56,8 @@ struct Experiment {
   std::vector<Verdict> verdicts = {};    ///< verdicts of all figures
   std::vector<std::string> unmade = {};  ///< names of figures that could not be computed
   std::vector<Stage> runs = {};
-  RunTable table = {};  ///< a row for each run, except runs that settle packings
+  std::set<std::string> scales = {};  ///< names of the scales of `runs`
+  RunTable table = {};                ///< a row for each run, except runs that settle packings
 };
 
 /// The contents of the page, from the store.
@@ -315,11 +315,7 @@ json step(const char* title, std::initializer_list<Count> counts) {
   return {{"title", title}, {"some", !list.empty()}, {"counts", std::move(list)}};
 }
 
-json stages_step(const char* title, const Experiment& experiment, bool prepare) {
-  std::map<StageState, std::size_t> in;
-  for (const Stage& stage : experiment.runs) {
-    if ((stage.kind == name_of(StageKind::prepare)) == prepare) ++in[stage.state];
-  }
+json stages_step(const char* title, std::map<StageState, std::size_t>& in) {
   return step(title, {{"done", "✓", "done", in[StageState::completed]},
                       {"running", "▸", "running", in[StageState::running]},
                       {"stopped", "‖", "interrupted", in[StageState::interrupted]},
@@ -328,12 +324,14 @@ json stages_step(const char* title, const Experiment& experiment, bool prepare) 
 }
 
 json workflow(const Content& content, const Experiment& experiment) {
+  std::map<StageState, std::size_t> packings, runs;
   std::map<CheckpointState, std::size_t> in;
   std::size_t left = 0;  // upper limit of the checkpoints that unfinished runs will still record
   for (const Stage& stage : experiment.runs) {
     for (const CheckpointHistory& c : content.runs.at(stage.id).checkpoints) ++in[c.record.state];
-    // A settling packing will record an unknown number of checkpoints.
-    if (stage.kind == name_of(StageKind::prepare)) continue;
+    const bool is_packing = stage.kind == name_of(StageKind::prepare);
+    ++(is_packing ? packings : runs)[stage.state];
+    if (is_packing) continue;  // it will record an unknown number of checkpoints
     std::vector<Ask> asks;
     for (const Membership& m : stage.memberships) {
       if (m.place.experiment == experiment.manifest.experiment) asks.push_back(m.ask);
@@ -345,7 +343,7 @@ json workflow(const Content& content, const Experiment& experiment) {
   json figures = step("Figures", {{"done", "✓", "made", experiment.figures.size()},
                                   {"failed", "✗", "cannot be made", experiment.unmade.size()}});
   figures["figures_step"] = true;
-  return {stages_step("Packings", experiment, true), stages_step("Runs", experiment, false),
+  return {stages_step("Packings", packings), stages_step("Runs", runs),
           step("Checkpoints", {{"done", "✓", "stored", in[CheckpointState::recorded]},
                                {"stopped", "‖", "pruned", in[CheckpointState::pruned]},
                                {"failed", "✗", "damaged", in[CheckpointState::rejected]},
@@ -358,46 +356,44 @@ json workflow(const Content& content, const Experiment& experiment) {
 json columns_of(const Experiment& experiment) {
   const Table& table = experiment.table.table;
   json shown = json::array();
-  const auto add = [&](std::size_t at, const std::string& heading, bool numeric) {
-    const auto& [key, meaning] = table.columns.at(at);
+  const auto add = [&](std::string_view key, const std::string& heading, bool numeric = true) {
+    const std::size_t at = table.place(key);
     shown.push_back({{"at", at},
                      {"key", key},
-                     {"meaning", meaning},
+                     {"meaning", table.columns.at(at).meaning},
                      {"heading", heading},
                      {"numeric", numeric}});
   };
   const std::size_t seed = table.place("seed"), cycle = table.place("cycle");
   const std::size_t scale = table.place("scale");
-  add(table.place("run"), "run", false);
+  add("run", "run", false);
   const bool differ = std::ranges::any_of(
       table.rows, [&](const TableRow& row) { return row[scale] != table.rows.front()[scale]; });
-  if (differ) add(scale, "scale", false);
+  if (differ) add("scale", "scale", false);
   // The columns between `seed` and `cycle` are `grains` and the swept parameters.
   const bool labelled = !recorded_manifest(experiment.manifest.text).labels.empty();
-  if (labelled || cycle - seed == 2) add(table.place("variant"), "variant", false);
+  if (labelled || cycle - seed == 2) add("variant", "variant", false);
   for (std::size_t at = seed + 1; at < cycle; ++at) {
     const Field* field = find_field(table.columns[at].name);
     if (field == nullptr || field->name == "grains") continue;
     std::string name(field->symbol.empty() ? field->name : field->symbol);
     std::ranges::replace(name, '_', ' ');
     const bool unit = !field->symbol.empty() && field->unit != "1" && !field->unit.empty();
-    add(at, unit ? fmt::format("{} [{}]", name, field->unit) : name, !field->unit.empty());
+    const std::string heading = unit ? fmt::format("{} [{}]", name, field->unit) : name;
+    add(field->name, heading, !field->unit.empty());
   }
-  for (const auto& [key, heading] : std::initializer_list<std::pair<const char*, const char*>>{
-           {"seed", "seed"},
-           {"grains", "N"},
-           {"state", "state"},
-           {"cycle", "cycle"},
-           {"target_cycles", "of"},
-           {"phi", "ϕ"},
-           {"crystalline_percent", "crystalline [%]"},
-           {"largest_crystallite", "largest crystallite"},
-           {"onset_size_cycle", "onset cycle"},
-           {"onset_size_phi", "onset ϕ"},
-           {"wall_time_s", "time [s]"},
-           {"particle_steps_per_s", "steps/s"}}) {
-    add(table.place(key), heading, key != std::string_view("state"));
-  }
+  add("seed", "seed");
+  add("grains", "N");
+  add("state", "state", false);
+  add("cycle", "cycle");
+  add("target_cycles", "of");
+  add("phi", "ϕ");
+  add("crystalline_percent", "crystalline [%]");
+  add("largest_crystallite", "largest crystallite");
+  add("onset_size_cycle", "onset cycle");
+  add("onset_size_phi", "onset ϕ");
+  add("wall_time_s", "time [s]");
+  add("particle_steps_per_s", "steps/s");
   return shown;
 }
 
@@ -524,45 +520,27 @@ json script_data(const Content& content) {
 }
 
 /// The chosen experiments (default: all) in the order of first registration, each with its newest
-/// manifest.
+/// manifest. If scales are chosen, an experiment without a run at these scales is left out.
 std::vector<Experiment> experiments_of(const Store& store, const RunSelection& chosen) {
   Filter names(chosen.experiments), scales(chosen.scales);
   std::vector<Experiment> found;
-  for (RegisteredManifest& manifest : newest_manifests(store)) {
-    if (names.passes(manifest.experiment)) found.push_back({std::move(manifest)});
-  }
   const std::vector<Stage> stages = store.stages();
-  for (Experiment& experiment : found) {
-    const auto is_member = [&](const Membership& m) {
-      return m.place.experiment == experiment.manifest.experiment &&
-             scales.passes(scale_name(m.place.scale));
-    };
-    std::ranges::copy_if(stages, std::back_inserter(experiment.runs), [&](const Stage& stage) {
-      return std::ranges::any_of(stage.memberships, is_member);
-    });
-  }
-  std::erase_if(found, [&](const Experiment& experiment) {
-    return !chosen.scales.empty() && experiment.runs.empty();
-  });
-  return found;
-}
-
-/// Adds a note on the scales of the experiment that no figure in the page shows.
-void note_other_scales(const Experiment& experiment, const std::string& shown,
-                       std::set<std::string>& notes) {
-  const std::string& name = experiment.manifest.experiment;
-  std::set<std::string> others;
-  for (const Stage& stage : experiment.runs) {
-    for (const Membership& m : stage.memberships) {
-      if (m.place.experiment == name && m.place.scale != shown) {
-        others.insert(scale_name(m.place.scale));
+  for (RegisteredManifest& manifest : newest_manifests(store)) {
+    if (!names.passes(manifest.experiment)) continue;
+    Experiment experiment{std::move(manifest)};
+    for (const Stage& stage : stages) {
+      bool is_chosen = false;
+      for (const auto& [place, ask, newest] : stage.memberships) {
+        const std::string scale = scale_name(place.scale);
+        if (place.experiment != experiment.manifest.experiment || !scales.passes(scale)) continue;
+        experiment.scales.insert(scale);
+        is_chosen = true;
       }
+      if (is_chosen) experiment.runs.push_back(stage);
     }
+    if (chosen.scales.empty() || !experiment.runs.empty()) found.push_back(std::move(experiment));
   }
-  if (others.empty()) return;
-  notes.insert(
-      fmt::format("experiment {}: the figures show scale {}; choose another with --scale: {}", name,
-                  scale_name(shown), some_of(others)));
+  return found;
 }
 
 void add_figures(Content& content) {
@@ -570,14 +548,16 @@ void add_figures(Content& content) {
   WantedFigures wanted = wanted_figures(content.store, {}, options.runs.experiments);
   Report& report = content.report;
   report.problems.insert(wanted.unknown.begin(), wanted.unknown.end());
-  const std::string others = leave_out_unselected(content.store, options.runs, wanted.figures);
-  if (!others.empty()) report.notes.insert(others);
+  const std::string left = leave_out_unselected(content.store, options.runs, wanted.figures);
+  if (!left.empty()) report.notes.insert(left);
   for (const WantedFigure& figure : wanted.figures) {
     const auto home = std::ranges::find(content.experiments, figure.experiment,
                                         [](const Experiment& e) { return e.manifest.experiment; });
     const bool at_home = home != content.experiments.end();
-    std::set<std::string>* said = nullptr;  // the list to which the message `why` is added
-    std::string why;
+    const auto leave_out = [&](std::set<std::string>& list, const std::exception& why) {
+      list.insert("figure " + figure.path() + ": " + why.what());
+      if (at_home) home->unmade.push_back(figure.figure.name);
+    };
     try {
       const ComputedFigure made =
           compute_figure(content.store, figure, {options, {}, options.runs});
@@ -585,19 +565,22 @@ void add_figures(Content& content) {
       if (at_home) std::ranges::copy(made.verdicts, std::back_inserter(home->verdicts));
       const bool is_first = at_home && home->figures.size() == 1;
       if (is_first && options.runs.scales.empty()) {
-        note_other_scales(*home, made.scale, report.notes);
+        std::set<std::string> others = home->scales;
+        others.erase(scale_name(made.scale));
+        if (!others.empty()) {
+          report.notes.insert(fmt::format(
+              "experiment {}: the figures show scale {}; choose another with --scale: {}",
+              figure.experiment, scale_name(made.scale), some_of(others)));
+        }
       }
       ++report.figures;
-      continue;
     } catch (const StoreDamaged& damage) {
-      said = &report.damage, why = damage.what();
+      leave_out(report.damage, damage);
     } catch (const UsageError& problem) {
-      said = &report.problems, why = problem.what();
+      leave_out(report.problems, problem);
     } catch (const AnalysisError& problem) {
-      said = &report.problems, why = problem.what();
+      leave_out(report.problems, problem);
     }
-    said->insert("figure " + figure.path() + ": " + why);
-    if (at_home) home->unmade.push_back(figure.figure.name);
   }
 }
 

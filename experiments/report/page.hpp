@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <set>
 #include <string>
-#include <vector>
 
 #include "experiments/figures/select_runs.hpp"
 #include "experiments/report/packings.hpp"

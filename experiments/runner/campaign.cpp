@@ -136,13 +136,10 @@ class Campaign {
 
   CampaignResult run(std::size_t workers) {
     // Shows other processes that this process is alive, even during long simulations.
-    const Repeated heartbeat(std::chrono::duration<double>(store_.lease_seconds() / 4), [this] {
-      try {
-        store_.renew_leases();
-      } catch (const std::exception&) {
-        // The next heartbeat tries again. The store rejects records of a stage that was taken over.
-      }
-    });
+    // If a lease is lost, the store rejects records of the stage that was taken over.
+    const Repeated heartbeat(
+        std::chrono::duration<double>(store_.lease_seconds() / 4),
+        [this] { store_.renew_leases(); }, [](const std::exception&) {});
     {
       const auto threads = start_threads(workers, [this](std::size_t) { work(); });
       work();

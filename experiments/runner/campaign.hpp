@@ -30,7 +30,11 @@ struct CampaignResult {
   std::size_t blocked = 0;
   std::size_t damaged = 0;            ///< stages with a damaged file in the store
   std::size_t files_deleted = 0;      ///< checkpoint files deleted because of --keep-every
-  std::vector<std::string> messages;  ///< on failures, damage, and states with another bits_version
+  bool left_failed = false;           ///< failed stages were left out because of --leave-failed
+  /// On failures, damage, and states with another bits_version.
+  std::vector<std::string> messages = {};
+
+  bool operator==(const CampaignResult&) const = default;
 };
 
 /// Records the manifest and the runs of the plan. Returns the stages of these runs, each stage

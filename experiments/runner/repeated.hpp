@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <condition_variable>
+#include <exception>
 #include <functional>
 #include <mutex>
 #include <stop_token>
@@ -12,15 +13,21 @@
 
 namespace shearcell {
 
-/// Calls `action` in a separate thread after every interval, until this object is destroyed.
-/// `action` must not throw.
+/// Calls `action` in a separate thread after every interval, until this object is destroyed. If
+/// `action` throws, calls `failed`, and tries again after the next interval.
 class Repeated {
  public:
-  Repeated(std::chrono::duration<double> interval, std::function<void()> action)
-      : thread_([this, interval, action = std::move(action)](const std::stop_token& stop) {
+  Repeated(std::chrono::duration<double> interval, std::function<void()> action,
+           std::function<void(const std::exception&)> failed)
+      : thread_([this, interval, action = std::move(action),
+                 failed = std::move(failed)](const std::stop_token& stop) {
           std::unique_lock lock(mutex_);
           while (!wake_.wait_for(lock, stop, interval, [&stop] { return stop.stop_requested(); })) {
-            action();
+            try {
+              action();
+            } catch (const std::exception& problem) {
+              failed(problem);
+            }
           }
         }) {}
 

@@ -234,7 +234,7 @@ TEST_F(Convenience, ExportsTheRequestedCycles) {
   expect_refused({"export", id, "--to", "extxyz", "--out", "other", "--cycles", "99"},
                  {"shearcell: run ", " has no stored checkpoint in cycles 99"});
   expect_refused({"export", id, "--to", "extxyz", "--out", "other", "--cycles", "20:0"},
-                 {"--cycles 20:0: the first cycle is after the last; write 0:20"});
+                 {"--cycles 20:0: the first cycle is after the last"});
   for (const std::string line : {"ro-crate --cycles 0", "ro-crate --metres", "vtk --metres",
                                  "h5md --license https://x.org"}) {
     expect_refused(joined({"export", id, "--out", "other", "--to"}, split(line)),
