@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "analysis/estimators.hpp"
-#include "analysis/estimators/notes.hpp"
 #include "analysis/looks.hpp"
 #include "analysis/plots.hpp"
 #include "provenance/errors.hpp"

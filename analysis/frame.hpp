@@ -78,6 +78,10 @@ struct RunValue {
 /// Makes a RunValue. A value that is not finite is missing (`undefined`).
 RunValue measured(double value);
 
+/// Width of the bins in phi. Runs reach the same phi at different cycles, so they are averaged at
+/// equal phi. Bins begin at integer multiples of this width. [choice]
+inline constexpr double phi_bin = 0.002;
+
 // --- Columns ---
 
 /// The value of a parameter, swept or not; null if the run has no such key.

@@ -12,7 +12,6 @@
 #include <map>
 #include <set>
 
-#include "analysis/binning.hpp"
 #include "analysis/published.hpp"
 
 namespace shearcell {

@@ -48,7 +48,7 @@ enum class Region { interior, core };
 /// Name of the measure that counts the grains of the region.
 std::string grains_of(Region region);
 
-/// Nucleation rate in a bin of phi (binning.hpp) before the onset (onset.hpp, method 1).
+/// Nucleation rate in a bin of phi (phi_bin) before the onset (onset.hpp, method 1).
 struct NucleationRate {
   double phi_low = 0;
   double phi_high = 0;

@@ -18,11 +18,9 @@
 #include <vector>
 
 #include "analysis/axes.hpp"
-#include "analysis/binning.hpp"
 #include "analysis/claims.hpp"
 #include "analysis/error.hpp"
 #include "analysis/estimators.hpp"
-#include "analysis/estimators/notes.hpp"
 #include "analysis/styles.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/json_text.hpp"

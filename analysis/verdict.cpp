@@ -129,7 +129,7 @@ Verdict decide(const Claim& claim, std::string quantity, const std::optional<Est
   verdict.entered = std::move(entered);
   if (!claim.cannot_be_decided.empty()) {
     verdict.ruling = Ruling::undecidable;
-    verdict.note += (verdict.note.empty() ? "" : "; ") + claim.cannot_be_decided;
+    add_note(verdict.note, claim.cannot_be_decided);
   }
   if (!estimate) return verdict;
   verdict.estimate = estimate->value;

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "analysis/axes.hpp"
-#include "analysis/binning.hpp"
 #include "analysis/estimators.hpp"
 #include "analysis/figures/figures.hpp"
 #include "analysis/nucleation.hpp"

@@ -91,6 +91,18 @@ Table density_table(std::string name, std::string first_column, Text x,
   return table;
 }
 
+/// Mean over all items of the packings. The bootstrap draws packings, each with all its items.
+std::optional<Estimate> mean_of_items(std::span<const std::vector<double>> packings) {
+  return bootstrapped(packings.size(), [&](std::span<const std::size_t> selection) {
+    double sum = 0, all = 0;
+    for (const std::size_t packing : selection) {
+      for (const double item : packings[packing]) sum += item;
+      all += static_cast<double>(packings[packing].size());
+    }
+    return sum / all;
+  });
+}
+
 /// Verdict on the share of nuclei in one part of the cell minus the share in another part. `side`
 /// returns 1 for a nucleus in the first part, -1 in the second part, and 0 elsewhere. A nucleus for
 /// which it returns nothing is left out. The bootstrap resamples packings, each with all its runs.
@@ -123,7 +135,7 @@ Verdict share_verdict(const Claim& claim, std::string quantity, RunGroup runs, C
       enter(*run, {place, std::int64_t{*counted}}, entered);
     }
   }
-  return decide(claim, std::move(quantity), share(sides), packings, std::move(note),
+  return decide(claim, std::move(quantity), mean_of_items(sides), packings, std::move(note),
                 std::move(entered));
 }
 
