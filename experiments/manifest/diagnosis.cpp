@@ -577,7 +577,7 @@ std::vector<string> problems_of(const PlotSpec& plot, const ScaleRuns& here,
                                 std::span<const ScaleRuns> all) {
   const Scale& scale = here.scale;
   const PlotRuns selection = selected_by(plot, here.runs);
-  const std::vector<const FrameRun*> runs = selection.runs();
+  const std::vector<const FrameRun*> runs = runs_of(selection.drawn);
   std::vector<string> found = {problem_of_minus(plot, count_variants(selection.subtracted)),
                                lack_of_partner(plot, selection)};
   if (runs.empty()) {
@@ -616,7 +616,7 @@ std::vector<string> problems_of(const PlotSpec& plot, const ScaleRuns& here,
           "one curve.",
           words_of(one.where), curves));
     } else if (curves == 0 && std::ranges::none_of(all, [&](const ScaleRuns& other) {
-                 return curves_of(one, plot, selected_by(plot, other.runs).runs()) > 0;
+                 return curves_of(one, plot, runs_of(selected_by(plot, other.runs).drawn)) > 0;
                })) {
       found.push_back(
           format("the style for {} matches no curve at any scale. Use only values of curves that "
