@@ -15,13 +15,18 @@ void add_size_columns(const std::string& name, std::vector<TableColumn>& columns
   }
 }
 
+ChartPoint point_of(double x, const Estimate& size) {
+  return {
+      .x = x, .y = size.value, .y_error = size.spread / std::sqrt(static_cast<double>(size.runs))};
+}
+
 void add_size(const std::optional<Estimate>& size, TableRow& row) {
   if (!size) {
     row.resize(row.size() + 4);
     return;
   }
-  row.insert(row.end(), {size->value, size->interval.low, size->interval.high,
-                         size->spread / std::sqrt(static_cast<double>(size->runs))});
+  row.insert(row.end(),
+             {size->value, size->interval.low, size->interval.high, point_of(0, *size).y_error});
 }
 
 }  // namespace shearcell

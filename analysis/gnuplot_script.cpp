@@ -145,7 +145,7 @@ class Script {
  public:
   explicit Script(const Table& table) : chart_(table.chart) {
     for (const Series& series : chart_.series) {
-      points_.push_back(points_of(table, series));
+      points_.push_back(points_of(series));
       for (ChartPoint& p : points_.back()) p.x += series.shift;
       std::erase_if(points_.back(),
                     [this](const ChartPoint& p) { return !is_on_log_axes(chart_, p); });

@@ -602,13 +602,13 @@ Axis x_axis(const PlotSpec& plot, std::span<const Selected> runs) {
   return {.name = fmt::format("{} of the stiffening", word), .whole = true};
 }
 
-/// The chart series of a curve, without its points.
+/// The series of a curve, without points.
 Series series_of(const Curve& curve) {
   return {.title = curve.title,
           .colour = curve.look.colour,
           .point = curve.look.point,
           .join = curve.look.join,
-          .filter = {"variant", curve.variant}};
+          .variant = curve.variant};
 }
 
 /// Removes the symbols of a curve, since symbols at every point would hide the line.
@@ -648,22 +648,33 @@ std::vector<Series> series_of_runs(const Panel& panel) {
   return all;
 }
 
+/// The means of column k of y, as points.
+std::vector<ChartPoint> mean_points(Against what, std::span<const Bin> bins, std::size_t k) {
+  std::vector<ChartPoint> points;
+  for (const Bin& bin : bins) {
+    const bool mean_x = what == Against::phi || what == Against::measure;
+    const std::optional<double> x = mean_x ? bin.x.mean : bin.at;
+    const RunStatistics& y = bin.y[k];
+    if (!x || !y.mean) continue;
+    ChartPoint& point = points.emplace_back(ChartPoint{*x, *y.mean});
+    if (what == Against::phi) point.x_error = bin.x.standard_error;
+    point.y_error = y.standard_error;
+    point.runs = static_cast<double>(y.runs);
+  }
+  return points;
+}
+
 /// If runs end at different cycles, the mean over the remaining runs would jump. The mean therefore
 /// ends where the first run ends, and the longer runs continue as thin lines. Returns whether the
 /// runs end at different cycles.
-bool follow_runs(const Curve& curve, std::span<const Bin> bins, bool rms, Series& mean,
+bool follow_runs(const Curve& curve, double last_cycle, bool rms, Series& mean,
                  std::vector<Series>& single) {
   double first_end = infinite;
   for (const Trace& trace : curve.traces) {
     if (!trace.samples.empty()) first_end = std::min(first_end, trace.samples.back().cycle);
   }
-  if (bins.back().at <= first_end) return false;
-  mean.columns = {};
-  for (const Bin& bin : bins) {
-    if (bin.at > first_end || !bin.y.front().mean) continue;
-    mean.points.push_back({bin.at, *bin.y.front().mean, std::nullopt, bin.y.front().standard_error,
-                           static_cast<double>(bin.y.front().runs)});
-  }
+  if (last_cycle <= first_end) return false;
+  std::erase_if(mean.points, [&](const ChartPoint& point) { return point.x > first_end; });
   for (const Trace& trace : curve.traces) {
     Series line{.colour = mean.colour, .point = 0, .join = Join::line, .thin = true};
     for (const Sample& sample : trace.samples) {
@@ -833,9 +844,6 @@ Table draw(const Panel& panel) {
   for (const BinColumn& one : cells) table.columns.emplace_back(one.name);
   std::vector<Series> single;
   std::size_t with_value = 0;
-  const std::string x = what == Against::phi || what == Against::measure
-                            ? column_name(column_for(plot.x), "mean")
-                            : table.columns[1].name;
   for (const Curve& curve : panel.curves) {
     const std::vector<Bin> bins = average(plot, curve, columns);
     for (const Bin& bin : bins) {
@@ -845,22 +853,16 @@ Table draw(const Panel& panel) {
     }
     Series series = series_of(curve);
     series.band = what != Against::number_of_run;
-    if (what == Against::phi) series.columns.x_error = "phi_standard_error";
     if (what == Against::curve) leave_out_symbol(curve, series);
     // If x has one value for each run, points at different x come from different runs.
     if (what != Against::number_of_run) series.runs = by_packing(runs_of(curve.members)).size();
-    if (what == Against::cycle && !bins.empty() &&
-        follow_runs(curve, bins, columns[0].rms, series, single)) {
-      table.chart.note = "Thin lines: single runs, after the shortest run of the curve has ended";
-    }
     for (std::size_t k = 0; k <= plot.drawn; ++k) {
       Series& drawn = table.chart.series.emplace_back(series);
-      if (!series.points.empty() && k == 0) continue;  // follow_runs() has set the points
-      drawn.points.clear();
-      drawn.columns.x = x;
-      drawn.columns.y = column_name(columns[k], "mean");
-      drawn.columns.y_error = column_name(columns[k], "standard_error");
-      drawn.columns.runs = k == 0 ? "runs" : columns[k].name + "_runs";
+      drawn.points = mean_points(what, bins, k);
+      if (k == 0 && what == Against::cycle && !bins.empty() &&
+          follow_runs(curve, bins.back().at, columns[0].rms, drawn, single)) {
+        table.chart.note = "Thin lines: single runs, after the shortest run of the curve has ended";
+      }
       if (plot.drawn == 0) continue;
       name_y(plot, k, panel.curves.size() == 1, drawn);
       if (what == Against::number_of_run && !bins.empty()) {
@@ -941,7 +943,7 @@ void share_ranges(std::vector<Table>& tables) {
   std::array<double, 2> low = {infinite, infinite}, high = {-infinite, -infinite};
   for (const Table& table : tables) {
     for (const Series& series : table.chart.series) {
-      for (const ChartPoint& p : points_of(table, series)) {
+      for (const ChartPoint& p : points_of(series)) {
         if (!is_on_log_axes(table.chart, p)) continue;
         const double error = table.chart.y.log ? 0 : p.y_error.value_or(0);
         low = {std::min(low[0], p.x), std::min(low[1], p.y - error)};

@@ -74,19 +74,17 @@ Table density_table(std::string name, std::string first_column, Text x,
                  .y = {.name = "probability density", .symbol = formula("$P$"), .low = 0},
                  .errors = "bars are standard errors over packings"};
   for (const Profile& profile : profiles) {
+    const std::size_t k = table.chart.series.size();
+    Series& series =
+        table.chart.series.emplace_back(Series{.title = profile.title,
+                                               .colour = colours[k % colours.size()],
+                                               .point = 4 + 2 * static_cast<int>(k % 4)});
     for (const DensityBin& bin : density(profile.places.packings, density_bins)) {
       table.rows.push_back({profile.key, bin.low, bin.high, bin.density, bin.error,
                             profile.places.count, profile.places.runs});
+      series.points.push_back(
+          {.x = (bin.low + bin.high) / 2, .y = bin.density, .y_error = bin.error});
     }
-    const std::size_t k = table.chart.series.size();
-    table.chart.series.push_back({.title = profile.title,
-                                  .colour = colours[k % colours.size()],
-                                  .point = 4 + 2 * static_cast<int>(k % 4),
-                                  .columns = {.x = "low",
-                                              .y = "probability_density",
-                                              .y_error = "standard_error",
-                                              .x_high = "high"},
-                                  .filter = {table.columns.front().name, profile.key}});
   }
   return table;
 }

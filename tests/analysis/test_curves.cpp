@@ -231,7 +231,7 @@ TEST(Curves, EndTheirMeanWithTheFirstRunThatEnds) {
                                        rising_run("still", 2, 6, 0.01)};
   const Table before = find_figure("S2")->make(whole).tables.at(0);
   ASSERT_EQ(before.chart.series.size(), 1U);
-  EXPECT_EQ(points_of(before, before.chart.series[0]).size(), 7U);
+  EXPECT_EQ(points_of(before.chart.series[0]).size(), 7U);
   EXPECT_TRUE(before.chart.note.empty());
 
   std::vector<FrameRun> runs = whole;
@@ -239,9 +239,9 @@ TEST(Curves, EndTheirMeanWithTheFirstRunThatEnds) {
   const Table table = find_figure("S2")->make(runs).tables.at(0);
   EXPECT_EQ(table.rows.size(), before.rows.size()) << "the numbers of those that are left";
   ASSERT_EQ(table.chart.series.size(), 2U) << "the mean and the run that continues";
-  const std::vector<ChartPoint> mean = points_of(table, table.chart.series[0]);
-  const std::vector<ChartPoint> rest = points_of(table, table.chart.series[1]);
-  const std::vector<ChartPoint> all = points_of(before, before.chart.series[0]);
+  const std::vector<ChartPoint> mean = points_of(table.chart.series[0]);
+  const std::vector<ChartPoint> rest = points_of(table.chart.series[1]);
+  const std::vector<ChartPoint> all = points_of(before.chart.series[0]);
   ASSERT_EQ(mean.size(), 5U);
   for (std::size_t n = 0; n < mean.size(); ++n) {
     EXPECT_EQ(mean[n].x, static_cast<double>(n));

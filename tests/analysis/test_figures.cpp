@@ -156,7 +156,7 @@ TEST(FigureC, FollowsCrystallitesOverSeveralNumbersOfCycles) {
                                             std::int64_t{10}, std::int64_t{15}, std::int64_t{20},
                                             std::int64_t{40}}));
   EXPECT_EQ(followed.rows.at(4).at(2), critical.rows.at(0).at(3)) << "15 cycles are n_bin";
-  const std::vector<ChartPoint> supplement = points_of(followed, followed.chart.series.at(1));
+  const std::vector<ChartPoint> supplement = points_of(followed.chart.series.at(1));
   ASSERT_EQ(supplement.size(), 1U);
   EXPECT_EQ(supplement.front().x, 15);
   EXPECT_EQ(supplement.front().y, 16);
@@ -283,7 +283,7 @@ TEST(FigureSummary, IsOfTheRunsOfSeveralExperiments) {
   const FigureResult made = summary.make(runs);
   const Table &by_amplitude = panel(made, "summary_a"), &by_phi = panel(made, "summary_c");
   EXPECT_EQ(by_amplitude.rows.size(), 2U);
-  EXPECT_EQ(points_of(by_amplitude, by_amplitude.chart.series.at(0)).size(), 2U);
+  EXPECT_EQ(points_of(by_amplitude.chart.series.at(0)).size(), 2U);
   std::map<std::string, std::set<std::string>> colours;  // of the variants
   for (const Series& one : by_phi.chart.series) {
     colours[one.colour].insert(plain_text(one.title));
