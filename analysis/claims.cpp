@@ -254,10 +254,8 @@ namespace {
 
 /// What to add to a side that selects several variants: "Add `pressure_Pa: 300` or another value."
 std::string remedy_for(RunGroup side) {
-  std::vector<nlohmann::json> swept;
-  for (const FrameRun* run : side) swept.push_back(run->place.swept);
   std::vector<std::string> values;
-  for (const std::string& key : varied_keys(swept)) {
+  for (const std::string& key : varied_keys(swept_of(side))) {
     values.push_back(fmt::format("{}: {}", key, value_text(parameter_of(*side.front(), key))));
   }
   return values.empty() ? "" : fmt::format(" Add `{}` or other values.", fmt::join(values, ", "));

@@ -164,7 +164,8 @@ std::vector<std::string> keys_telling_apart(std::span<const nlohmann::json> vari
 /// is `first`, then `first` is kept.
 std::vector<std::string> varied_keys(std::span<const nlohmann::json> variants,
                                      std::string_view first = "");
-std::vector<std::string> varied_keys(std::span<const FrameRun> runs, std::string_view first = "");
+/// The swept values of each run, for varied_keys().
+std::vector<nlohmann::json> swept_of(RunGroup runs);
 
 /// A plot draws one curve for each combination of values of `keys`. If a curve would average over
 /// the values of another swept key, returns this key, else "". Ignores keys that change only

@@ -159,9 +159,8 @@ struct Sample {
   std::vector<double> y = {};  ///< values of the columns in columns_of()
 };
 
-/// The samples of one run of a curve.
-struct Trace {
-  const FrameRun* run;
+/// One run of a curve and its samples.
+struct Trace : Selected {
   std::vector<Sample> samples = {};    ///< in the order of the checkpoints
   Missing missing = Missing::nothing;  ///< why y is missing, if y is a measure of the whole run
   /// For each column: the bound RunValue::above if the run ended before the event; otherwise NaN.
@@ -172,11 +171,10 @@ struct Trace {
 struct Curve {
   json key;             ///< the keys that distinguish curves, and their values in this curve
   std::string variant;  ///< `key` as text; in the CSV with ';' instead of ','
-  std::vector<Selected> members = {};
+  std::vector<Trace> traces = {};
   std::size_t style = 0;  ///< index in PlotSpec::series; the number of its entries: none
   Text title = {};
   Look look = {};
-  std::vector<Trace> traces = {};
 };
 
 /// A panel before it is drawn.
@@ -195,25 +193,24 @@ std::vector<ColumnSpec> measures_of(const PlotSpec& plot) {
 }
 
 /// Computes the samples of a run. `cycle` (from cycle_of()) is used if the plot draws one cycle.
-Trace evaluate(const PlotSpec& plot, std::span<const NumberColumn> columns, const NumberColumn& x,
-               const Selected& one, double cycle) {
-  Trace trace{one.run};
-  const auto at = std::ranges::find(one.checkpoints, cycle, &CheckpointMeasures::cycle);
-  const CheckpointMeasures* chosen = at == one.checkpoints.end() ? nullptr : *at;
+void evaluate(const PlotSpec& plot, std::span<const NumberColumn> columns, const NumberColumn& x,
+              double cycle, Trace& trace) {
+  const auto at = std::ranges::find(trace.checkpoints, cycle, &CheckpointMeasures::cycle);
+  const CheckpointMeasures* chosen = at == trace.checkpoints.end() ? nullptr : *at;
   const auto add = [&](double cycle_of_row, double x_value, const CheckpointMeasures* checkpoint) {
     Sample& sample = trace.samples.emplace_back(Sample{cycle_of_row, x_value});
     for (const NumberColumn& column : columns) {
       const bool is_y = &column == columns.data();
       const CheckpointMeasures* row = checkpoint;
-      if (!is_y && row == nullptr && !one.checkpoints.empty()) row = one.checkpoints.front();
-      sample.y.push_back(is_y ? value_of(column, one, checkpoint) : column(*one.run, row));
+      if (!is_y && row == nullptr && !trace.checkpoints.empty()) row = trace.checkpoints.front();
+      sample.y.push_back(is_y ? value_of(column, trace, checkpoint) : column(*trace.run, row));
     }
   };
   for (const ColumnSpec& column : measures_of(plot)) {
     const Measure* measure = find_measure(column.measure, MeasureKind::run);
-    const RunValue value = measure == nullptr ? RunValue{} : measure->of_run(*one.run);
+    const RunValue value = measure == nullptr ? RunValue{} : measure->of_run(*trace.run);
     if (trace.above.empty()) trace.missing = value.missing;
-    trace.above.push_back(one.partners.empty() ? value.above : std::nan(""));
+    trace.above.push_back(trace.partners.empty() ? value.above : std::nan(""));
   }
   switch (against(plot)) {
     case Against::curve:
@@ -228,16 +225,15 @@ Trace evaluate(const PlotSpec& plot, std::span<const NumberColumn> columns, cons
       break;
     case Against::number_of_run:
       if (is_of_run(plot.y)) chosen = nullptr;
-      if (is_of_run(plot.y) || chosen != nullptr) add(cycle, x(*one.run), chosen);
+      if (is_of_run(plot.y) || chosen != nullptr) add(cycle, x(*trace.run), chosen);
       break;
     default:
-      for (const CheckpointMeasures* checkpoint : one.checkpoints) {
+      for (const CheckpointMeasures* checkpoint : trace.checkpoints) {
         const bool whole = checkpoint->cycle == std::floor(checkpoint->cycle);
         if (!draws_runs(plot) && !whole) continue;
-        add(checkpoint->cycle, x(*one.run, checkpoint), checkpoint);
+        add(checkpoint->cycle, x(*trace.run, checkpoint), checkpoint);
       }
   }
-  return trace;
 }
 
 /// Replaces x, a measure of the whole run, by its mean over the runs of the variant, so that these
@@ -267,9 +263,7 @@ void average_x(std::vector<Curve>& curves) {
 std::vector<Curve> curves_of(const PlotSpec& plot, std::span<const Selected> runs) {
   const bool by_variant =
       against(plot) != Against::number_of_run && plot.by.empty() && plot.panel.empty();
-  std::vector<json> variants;
-  for (const Selected& one : runs) variants.push_back(one.run->place.swept);
-  std::vector<std::string> keys = varied_keys(variants, plot.x);
+  std::vector<std::string> keys = varied_keys(swept_of(runs_of(runs)), plot.x);
   for (const std::string& used : names_in(plot.x)) std::erase(keys, used);
   std::erase(keys, plot.panel);
   if (!plot.by.empty()) keys = {plot.by};
@@ -281,7 +275,7 @@ std::vector<Curve> curves_of(const PlotSpec& plot, std::span<const Selected> run
     }
     if (by_variant) key = one.run->place.swept;
     std::string text = by_variant ? one.run->place.variant : key.empty() ? "all" : words_of(key);
-    by_text.try_emplace(text, Curve{std::move(key), text}).first->second.members.push_back(one);
+    by_text.try_emplace(text, Curve{std::move(key), text}).first->second.traces.push_back({one});
   }
   std::vector<Curve> curves;
   for (auto& [text, curve] : by_text) curves.push_back(std::move(curve));
@@ -295,7 +289,7 @@ void set_titles(const PlotSpec& plot, const NameVariants& name, std::span<Curve>
   for (const Curve& curve : curves) keys.push_back(curve.key);
   const auto shared = name ? name(keys) : std::map<json, std::string>();
   for (Curve& curve : curves) {
-    const std::string of_variant = plot.panel.empty() ? shared_name(runs_of(curve.members)) : "";
+    const std::string of_variant = plot.panel.empty() ? shared_name(runs_of(curve.traces)) : "";
     curve.title = !of_variant.empty()          ? of_variant
                   : name && !curve.key.empty() ? shared.at(curve.key)
                                                : curve.variant;
@@ -315,7 +309,7 @@ void set_styles(const PlotSpec& plot, std::span<Curve> curves) {
   std::vector<std::size_t> count(plot.series.size() + 1);  // curves with this style
   for (Curve& curve : curves) {
     const auto style = std::ranges::find_if(plot.series, [&](const SeriesSpec& one) {
-      return used && one.column.empty() && has_parameters(*curve.members.front().run, one.where);
+      return used && one.column.empty() && has_parameters(*curve.traces.front().run, one.where);
     });
     curve.style = static_cast<std::size_t>(style - plot.series.begin());
     ++count[curve.style];
@@ -325,19 +319,16 @@ void set_styles(const PlotSpec& plot, std::span<Curve> curves) {
   }
 }
 
-std::string colour_of(const SeriesSpec& series) {
-  const auto name = std::ranges::find(colour_names, series.colour);
-  return name == colour_names.end()
-             ? series.colour
-             : safe_colours[static_cast<std::size_t>(name - colour_names.begin())];
-}
-
 /// Sets the colour and symbol that are given in the series entry.
 void set_look(const SeriesSpec& stated, std::string& colour, int& point) {
-  if (!stated.colour.empty()) colour = colour_of(stated);
-  const auto symbol = static_cast<std::size_t>(std::ranges::find(marker_names, stated.marker) -
-                                               marker_names.begin());
-  if (symbol < marker_names.size()) point = symbol == 0 ? 0 : curve_symbol(symbol - 1);
+  if (!stated.colour.empty()) colour = stated.colour;
+  const auto name = std::ranges::find(colour_names, stated.colour) - colour_names.begin();
+  if (name < std::ssize(colour_names)) colour = safe_colours[static_cast<std::size_t>(name)];
+  const auto symbol = std::ranges::find(marker_names, stated.marker) - marker_names.begin();
+  if (symbol == 0)
+    point = 0;
+  else if (symbol < std::ssize(marker_names))
+    point = curve_symbol(static_cast<std::size_t>(symbol) - 1);
 }
 
 /// The colours and symbols that the manifest states: in this plot, then in its other plots. If two
@@ -378,16 +369,14 @@ void set_curves(const Looks& looks, const NameVariants& names, Panel& panel) {
   set_titles(plot, names, panel.curves);
   set_styles(plot, panel.curves);
   std::erase_if(panel.curves, [](const Curve& curve) {
-    return std::ranges::all_of(curve.members,
-                               [](const Selected& one) { return one.checkpoints.empty(); });
+    return std::ranges::all_of(curve.traces,
+                               [](const Trace& one) { return one.checkpoints.empty(); });
   });
   for (Curve& curve : panel.curves) {
-    for (const Selected& one : curve.members) {
-      curve.traces.push_back(evaluate(plot, columns, x, one, panel.cycle));
-    }
-    curve.look = looks.of(runs_of(curve.members), curve.key);
+    for (Trace& trace : curve.traces) evaluate(plot, columns, x, panel.cycle, trace);
+    curve.look = looks.of(runs_of(curve.traces), curve.key);
     if (curve.style < plot.series.size()) {
-      apply(plot.series[curve.style], plot, curve.members.front().run->named, curve);
+      apply(plot.series[curve.style], plot, curve.traces.front().run->named, curve);
     }
     std::ranges::replace(curve.variant, ',', ';');  // some readers of CSV do not know quotes
   }
@@ -820,7 +809,7 @@ void add_mark(const Panel& panel, Table& table) {
   const NumberColumn x(mark.x), y(mark.y);
   Series series{.title = formula(mark.label), .colour = "#000000"};
   for (const Curve& curve : panel.curves) {
-    const std::vector<const FrameRun*> runs = runs_of(curve.members);
+    const std::vector<const FrameRun*> runs = runs_of(curve.traces);
     const auto over = [&](const NumberColumn& column) {
       std::vector<double> values;
       for (const FrameRun* run : runs) values.push_back(column(*run));
@@ -855,7 +844,7 @@ Table draw(const Panel& panel) {
     series.band = what != Against::number_of_run;
     if (what == Against::curve) leave_out_symbol(curve, series);
     // If x has one value for each run, points at different x come from different runs.
-    if (what != Against::number_of_run) series.runs = by_packing(runs_of(curve.members)).size();
+    if (what != Against::number_of_run) series.runs = by_packing(runs_of(curve.traces)).size();
     for (std::size_t k = 0; k <= plot.drawn; ++k) {
       Series& drawn = table.chart.series.emplace_back(series);
       drawn.points = mean_points(what, bins, k);

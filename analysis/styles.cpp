@@ -55,12 +55,10 @@ Look amplitude_look(double amplitude_rad, std::size_t k) {
 }
 
 Looks::Looks(const Frame& frame, std::vector<StatedLook> stated, std::vector<std::string> shared)
-    : variants_(frame.variants), stated_(std::move(stated)), shared_(std::move(shared)) {
-  if (variants_.empty()) {
-    for (const FrameRun& run : frame.runs) variants_.push_back(run.place.swept);
-  }
-  keys_ = varied_keys(variants_, "experiment");
-}
+    : variants_(frame.variants.empty() ? swept_of(pointers(frame.runs)) : frame.variants),
+      keys_(varied_keys(variants_, "experiment")),
+      stated_(std::move(stated)),
+      shared_(std::move(shared)) {}
 
 Look Looks::of(RunGroup curve, const json& key) const {
   const json& swept = curve.front()->place.swept;

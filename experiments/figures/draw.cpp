@@ -189,7 +189,7 @@ std::string verdict_text(const ComputedFigure& figure) {
 /// The title of the figure. If the runs differ only in parameters that the figure does not compare,
 /// the title names these parameters.
 std::string title_of(const Figure& figure, const std::vector<FrameRun>& runs) {
-  const std::vector<std::string> varied = varied_keys(runs);
+  const std::vector<std::string> varied = varied_keys(swept_of(pointers(runs)));
   const bool of_its_keys = std::ranges::any_of(
       varied, [&](const std::string& key) { return std::ranges::count(figure.keys, key) > 0; });
   if (figure.keys.empty() || varied.empty() || of_its_keys) return figure.title;
