@@ -17,6 +17,12 @@ namespace {
 
 using nlohmann::json;
 
+/// A text as a CSV field (RFC 4180), in quotes if it needs them.
+std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  return '"' + boost::replace_all_copy(text, "\"", "\"\"") + '"';
+}
+
 /// The table cell as a CSV field. If `significant` is 0, a number is written with all digits.
 std::string field_text(const TableCell& value, int significant) {
   if (const auto* text = std::get_if<std::string>(&value)) return csv_field(*text);
@@ -131,11 +137,6 @@ int digits_between(double low, double high) {
 
 std::string digits(double value, int significant) {
   return fmt::format("{:.{}g}", value == 0 ? 0.0 : value, significant);  // no "-0"
-}
-
-std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  return '"' + boost::replace_all_copy(text, "\"", "\"\"") + '"';
 }
 
 TableCell cell_of(const json& value) {

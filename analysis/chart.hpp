@@ -74,10 +74,9 @@ struct Axis {
 struct ChartPoint {
   double x = 0;
   double y = 0;
-  std::optional<double> x_error =
-      std::nullopt;  ///< standard error; bars reach from x - error to x + error
-  std::optional<double> y_error = std::nullopt;
-  std::optional<double> runs = std::nullopt;  ///< number of runs averaged in y
+  std::optional<double> x_error = std::nullopt;  ///< standard error, only for readers of the data
+  std::optional<double> y_error = std::nullopt;  ///< half of the bar or band
+  std::optional<double> runs = std::nullopt;     ///< number of runs averaged in y
 };
 
 enum class Join { none, line, dashes };
@@ -88,7 +87,7 @@ struct Series {
   int point = 7;             ///< symbol: 0 none, 4 square, 6 circle, 8 triangle, 10 triangle down,
                              ///< 12 diamond; add 1 for the filled symbol
   Join join = Join::none;    ///< points are joined in their order
-  bool band = false;         ///< errors of y are drawn as a band; errors of x are not drawn
+  bool band = false;         ///< errors of y are drawn as a band
   bool thin = false;         ///< a thin line, for one run of many
   bool large = false;        ///< larger points, which stay visible around smaller points
   std::string variant = {};  ///< name of the curve's variant in the table; "": no such variant
@@ -146,9 +145,6 @@ struct Table {
                                     columns.begin());
   }
 };
-
-/// A text as a CSV field (RFC 4180), in quotes if it needs them.
-std::string csv_field(const std::string& text);
 
 /// Digits of the numbers in a CSV file. `enough`: digits_between() for the smallest and the largest
 /// number of the column. `all`: the shortest text that reads back to the same double.

@@ -354,7 +354,7 @@ std::vector<StatedLook> stated_looks(const PlotSpec& plot, const Plots& others) 
 /// Sets the title and the style given in the series entry.
 void apply(const SeriesSpec& stated, const PlotSpec& plot, bool named, Curve& curve) {
   if (!stated.label.empty() && !(plot.listed && named)) curve.title = formula(stated.label);
-  if (!stated.colour.empty()) curve.look.join = curve.look.alone = Join::line;
+  if (!stated.colour.empty()) curve.look.join = Join::line;
   set_look(stated, curve.look.colour, curve.look.point);
 }
 
@@ -596,14 +596,14 @@ Series series_of(const Curve& curve) {
   return {.title = curve.title,
           .colour = curve.look.colour,
           .point = curve.look.point,
-          .join = curve.look.join,
+          .join = Join::line,
           .variant = curve.variant};
 }
 
 /// Removes the symbols of a curve, since symbols at every point would hide the line.
 void leave_out_symbol(const Curve& curve, Series& series) {
   series.point = 0;
-  series.join = curve.look.alone;
+  series.join = curve.look.join;
 }
 
 /// A thin line or a cloud of points for each run. Only the first run of a curve has a title.
