@@ -9,13 +9,19 @@
 #include <cmath>
 #include <limits>
 
-#include "analysis/error.hpp"
 #include "provenance/json_text.hpp"
+#include "provenance/words.hpp"
 
 namespace shearcell {
 namespace {
 
 using nlohmann::json;
+
+/// A text as a CSV field (RFC 4180), in quotes if it needs them.
+std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  return '"' + boost::replace_all_copy(text, "\"", "\"\"") + '"';
+}
 
 /// The table cell as a CSV field. If `significant` is 0, a number is written with all digits.
 std::string field_text(const TableCell& value, int significant) {
@@ -26,19 +32,8 @@ std::string field_text(const TableCell& value, int significant) {
   return significant > 0 ? digits(*real, significant) : json(*real).dump();
 }
 
-/// The index of a column, counted from 1. Throws AnalysisError if the table lacks the column.
-std::size_t column_number(const Table& table, const std::string& name) {
-  const std::size_t place = table.place(name);
-  if (place == table.columns.size()) {
-    throw AnalysisError("table " + table.name + " has no column '" + name + "' to draw");
-  }
-  return place + 1;
-}
-
-/// The number in column 1, 2, ... of a row. Empty for column 0 or a cell without a finite number.
-std::optional<double> number_in(const TableRow& row, std::size_t column) {
-  if (column == 0) return std::nullopt;
-  const TableCell& value = row.at(column - 1);
+/// Empty for a cell without a finite number.
+std::optional<double> number_in(const TableCell& value) {
   if (const auto* whole = std::get_if<std::int64_t>(&value)) return static_cast<double>(*whole);
   const auto* real = std::get_if<double>(&value);
   if (real == nullptr || !std::isfinite(*real)) return std::nullopt;
@@ -69,9 +64,9 @@ json to_json(const Axis& axis) {
           {"clip", axis.clip}};
 }
 
-json to_json(const Table& table, const Series& series) {
+json to_json(const Series& series) {
   json points = json::array();
-  for (const ChartPoint& p : points_of(table, series)) {
+  for (const ChartPoint& p : points_of(series)) {
     points.push_back(
         {number(p.x + series.shift), number(p.y), number(p.x_error), number(p.y_error)});
   }
@@ -85,7 +80,7 @@ json to_json(const Table& table, const Series& series) {
                 {"points", std::move(points)}};
   if (series.thin) facts["thin"] = true;
   if (series.large) facts["large"] = true;
-  if (series.filter.column == "variant") facts["of"] = json_of(series.filter.value);
+  if (!series.variant.empty()) facts["of"] = series.variant;
   return facts;
 }
 
@@ -144,11 +139,6 @@ std::string digits(double value, int significant) {
   return fmt::format("{:.{}g}", value == 0 ? 0.0 : value, significant);  // no "-0"
 }
 
-std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  return '"' + boost::replace_all_copy(text, "\"", "\"\"") + '"';
-}
-
 TableCell cell_of(const json& value) {
   if (value.is_number_float()) return value.get<double>();
   if (value.is_number()) return value.get<std::int64_t>();
@@ -183,14 +173,13 @@ std::string to_csv(const Table& table, Digits precision) {
   };
   add_line(table.columns, [](const TableColumn& column) { return csv_field(column.name); });
   std::vector<int> significant(table.columns.size(), 0);
-  for (std::size_t column = 1; precision == Digits::enough && column <= significant.size();
-       ++column) {
+  for (std::size_t k = 0; precision == Digits::enough && k < significant.size(); ++k) {
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (const TableRow& row : table.rows) {
-      const std::optional<double> value = number_in(row, column);
+      const std::optional<double> value = number_in(row.at(k));
       low = std::min(low, value.value_or(low)), high = std::max(high, value.value_or(high));
     }
-    significant[column - 1] = digits_between(low, high);
+    significant[k] = digits_between(low, high);
   }
   for (const TableRow& row : table.rows) {
     add_line(row, [&, k = std::size_t{0}](const TableCell& value) mutable {
@@ -200,29 +189,12 @@ std::string to_csv(const Table& table, Digits precision) {
   return text;
 }
 
-std::vector<ChartPoint> points_of(const Table& table, const Series& series) {
-  const SeriesColumns& from = series.columns;
-  if (from.x.empty()) {
-    std::vector<ChartPoint> points = series.points;
-    std::erase_if(points,
-                  [](const ChartPoint& p) { return !std::isfinite(p.x) || !std::isfinite(p.y); });
-    return points;
-  }
-  const auto number = [&](const std::string& name) {
-    return name.empty() ? 0 : column_number(table, name);
-  };
-  const std::size_t filter = number(series.filter.column);
-  const std::size_t x = number(from.x), y = number(from.y), x_high = number(from.x_high);
-  const std::size_t x_error = number(from.x_error), y_error = number(from.y_error);
-  const std::size_t runs = number(from.runs);
-  std::vector<ChartPoint> points;
-  for (const TableRow& row : table.rows) {
-    if (filter > 0 && row.at(filter - 1) != series.filter.value) continue;
-    const auto at = number_in(row, x), value = number_in(row, y);
-    if (!at || !value) continue;
-    const double middle = (*at + number_in(row, x_high).value_or(*at)) / 2;
-    points.push_back(
-        {middle, *value, number_in(row, x_error), number_in(row, y_error), number_in(row, runs)});
+std::vector<ChartPoint> points_of(const Series& series) {
+  std::vector<ChartPoint> points = series.points;
+  std::erase_if(points,
+                [](const ChartPoint& p) { return !std::isfinite(p.x) || !std::isfinite(p.y); });
+  for (ChartPoint& p : points) {
+    if (!std::isfinite(p.y_error.value_or(0))) p.y_error.reset();
   }
   return points;
 }
@@ -232,7 +204,7 @@ void name_run_counts(Table& table) {
   std::vector<std::string> counts;  // text for each mean; "" if no run is missing
   for (Series& series : table.chart.series) {
     double fewest = std::numeric_limits<double>::infinity(), most = 0;
-    for (const ChartPoint& point : points_of(table, series)) {
+    for (const ChartPoint& point : points_of(series)) {
       if (!point.runs) continue;
       fewest = std::min(fewest, *point.runs);
       most = std::max(most, *point.runs);
@@ -248,9 +220,7 @@ void name_run_counts(Table& table) {
   }
   const bool equal = std::ranges::all_of(counts, [&](const auto& c) { return c == counts[0]; });
   if (counts.size() > 1 && equal && !counts[0].empty()) {
-    std::string& note = table.chart.note;
-    note += fmt::format("{}Means over {} runs each", note.empty() ? "" : ". ", counts[0]);
-    return;
+    return add_note(table.chart.note, fmt::format("Means over {} runs each", counts[0]), ". ");
   }
   for (std::size_t k = 0; k < means.size(); ++k) {
     if (counts[k].empty()) continue;
@@ -300,7 +270,7 @@ std::string caption_of(const std::string& title, std::span<const Table> tables) 
     own_errors = own_errors || !chart.errors.empty();
     std::size_t lost = 0;
     for (const Series& series : chart.series) {
-      for (const ChartPoint& p : points_of(table, series)) {
+      for (const ChartPoint& p : points_of(series)) {
         if (p.y_error && chart.errors.empty()) (series.band ? bands : bars) = true;
         lost += is_on_log_axes(chart, p) ? 0 : 1;
       }
@@ -347,7 +317,7 @@ json to_json(const Text& text) {
 json chart_json(const Table& table) {
   const Chart& chart = table.chart;
   json series = json::array();
-  for (const Series& one : chart.series) series.push_back(to_json(table, one));
+  for (const Series& one : chart.series) series.push_back(to_json(one));
   json lines = json::array();
   for (const ReferenceLine& line : chart.lines) {
     lines.push_back({{"at", number(line.at)},

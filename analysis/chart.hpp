@@ -74,43 +74,24 @@ struct Axis {
 struct ChartPoint {
   double x = 0;
   double y = 0;
-  std::optional<double> x_error =
-      std::nullopt;  ///< standard error; bars reach from x - error to x + error
-  std::optional<double> y_error = std::nullopt;
-  std::optional<double> runs = std::nullopt;  ///< number of runs averaged in y
-};
-
-/// Names of the columns with the data of a series. All names except `x` and `y` may be empty. If
-/// `x_high` is not empty, x of a point is the mean of the columns `x` and `x_high`.
-struct SeriesColumns {
-  std::string x = {};
-  std::string y = {};
-  std::string x_error = {};
-  std::string y_error = {};
-  std::string x_high = {};
-  std::string runs = {};  ///< number of runs averaged in y
-};
-
-/// Selects the rows with `value` in the column named `column`; every row if `column` is empty.
-struct RowFilter {
-  std::string column;
-  TableCell value;
+  std::optional<double> x_error = std::nullopt;  ///< standard error, only for readers of the data
+  std::optional<double> y_error = std::nullopt;  ///< half of the bar or band
+  std::optional<double> runs = std::nullopt;     ///< number of runs averaged in y
 };
 
 enum class Join { none, line, dashes };
 
 struct Series {
-  Text title = {};          ///< in the legend; a series without a title has no entry
-  std::string colour = {};  ///< "#rrggbb"
-  int point = 7;            ///< symbol: 0 none, 4 square, 6 circle, 8 triangle, 10 triangle down,
-                            ///< 12 diamond; add 1 for the filled symbol
-  Join join = Join::none;   ///< points are joined in their order
-  bool band = false;        ///< errors of y are drawn as a band; errors of x are not drawn
-  bool thin = false;        ///< a thin line, for one run of many
-  bool large = false;       ///< larger points, which stay visible around smaller points
-  SeriesColumns columns = {};
-  RowFilter filter = {};
-  std::vector<ChartPoint> points = {};  ///< used if `columns.x` is empty
+  Text title = {};           ///< in the legend; a series without a title has no entry
+  std::string colour = {};   ///< "#rrggbb"
+  int point = 7;             ///< symbol: 0 none, 4 square, 6 circle, 8 triangle, 10 triangle down,
+                             ///< 12 diamond; add 1 for the filled symbol
+  Join join = Join::none;    ///< points are joined in their order
+  bool band = false;         ///< errors of y are drawn as a band
+  bool thin = false;         ///< a thin line, for one run of many
+  bool large = false;        ///< larger points, which stay visible around smaller points
+  std::string variant = {};  ///< name of the curve's variant in the table; "": no such variant
+  std::vector<ChartPoint> points = {};
   /// Number of independent packings in each mean; 0 if the points come from different runs.
   std::size_t runs = 0;
   double shift = 0;  ///< added to x in the drawing, so that points with equal x stay visible
@@ -165,9 +146,6 @@ struct Table {
   }
 };
 
-/// A text as a CSV field (RFC 4180), in quotes if it needs them.
-std::string csv_field(const std::string& text);
-
 /// Digits of the numbers in a CSV file. `enough`: digits_between() for the smallest and the largest
 /// number of the column. `all`: the shortest text that reads back to the same double.
 enum class Digits { enough, all };
@@ -178,8 +156,9 @@ std::string to_csv(const Table& table, Digits digits = Digits::enough);
 /// An array with one object for each row; the keys are in the order of the columns.
 nlohmann::ordered_json to_json(const Table& table);
 
-/// The points of one series that have finite x and y. Series::shift is not added.
-std::vector<ChartPoint> points_of(const Table& table, const Series& series);
+/// The points of one series that have finite x and y, without infinite errors of y. Series::shift
+/// is not added.
+std::vector<ChartPoint> points_of(const Series& series);
 
 /// Adds the number of runs per point, such as "(3 to 5 runs)", to the title of each series in which
 /// this number varies or is less than Series::runs. Readers need this number, since a mean may

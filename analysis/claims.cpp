@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "analysis/estimators.hpp"
-#include "analysis/estimators/notes.hpp"
 #include "analysis/looks.hpp"
 #include "analysis/plots.hpp"
 #include "provenance/errors.hpp"
@@ -130,19 +129,22 @@ Verdict decided_by(const ClaimSpec& claim, const Claim& stated, RunGroup a, RunG
 /// that no look includes are used only in the note. `planned`: the sides of Frame::pending.
 Verdict at_looks(const ClaimSpec& claim, Claim stated, const ClaimSides& sides,
                  const ClaimSides& planned, const Frame& frame) {
-  std::set<std::uint64_t> begun, pending;
-  std::array<std::set<std::uint64_t>, 2> of_side;
-  for (std::size_t k = 0; k < 2; ++k) {
-    for (const FrameRun* run : sides.runs[k]) begun.insert(run->place.seed);
-    for (const FrameRun* run : planned.runs[k]) pending.insert(run->place.seed);
-    for (const auto* runs : {&sides.runs[k], &planned.runs[k]}) {
-      for (const FrameRun* run : *runs) of_side[k].insert(run->place.seed);
+  const auto seeds_of = [](std::initializer_list<RunGroup> groups) {
+    std::set<std::uint64_t> seeds;
+    for (const RunGroup group : groups) {
+      for (const FrameRun* run : group) seeds.insert(run->place.seed);
     }
-  }
+    return seeds;
+  };
+  const auto& [a, b] = sides.runs;
+  const auto& [planned_a, planned_b] = planned.runs;
+  std::set<std::uint64_t> begun = seeds_of({a, b});
+  const std::set<std::uint64_t> pending = seeds_of({planned_a, planned_b});
+  const std::set<std::uint64_t> of_a = seeds_of({a, planned_a}), of_b = seeds_of({b, planned_b});
   const bool paired = !frame.looks.empty() && !has_one_side(claim);
   const auto lacks = [&](std::uint64_t seed) {
-    const auto has = [&](const auto& side) { return side.contains(seed); };
-    return paired ? !std::ranges::all_of(of_side, has) : std::ranges::none_of(of_side, has);
+    return paired ? !of_a.contains(seed) || !of_b.contains(seed)
+                  : !of_a.contains(seed) && !of_b.contains(seed);
   };
   std::erase_if(begun, lacks);
   std::vector<std::uint64_t> seeds = frame.seeds;
@@ -157,7 +159,7 @@ Verdict at_looks(const ClaimSpec& claim, Claim stated, const ClaimSides& sides,
     }
     return decided_by(claim, stated, runs[0], runs[1]);
   };
-  if (seeds.empty()) return decided_by(claim, stated, sides.runs[0], sides.runs[1]);
+  if (seeds.empty()) return decided_by(claim, stated, a, b);
   std::vector<std::size_t> looks = frame.looks;
   if (looks.empty()) looks = {seeds.size()};
   for (std::size_t& look : looks) look = std::min(look, seeds.size());
@@ -201,7 +203,7 @@ Verdict at_looks(const ClaimSpec& claim, Claim stated, const ClaimSides& sides,
   }
   std::erase_if(begun, [&](std::uint64_t seed) { return std::ranges::count(seeds, seed) > 0; });
   if (begun.empty()) return verdict;
-  const Verdict all = decided_by(claim, stated, sides.runs[0], sides.runs[1]);
+  const Verdict all = decided_by(claim, stated, a, b);
   add_note(verdict.note, fmt::format("an unplanned look, using {} more than planned, gives: {}",
                                      counted(begun.size(), "seed"), numbers_of(all)));
   return verdict;
@@ -255,10 +257,8 @@ namespace {
 
 /// What to add to a side that selects several variants: "Add `pressure_Pa: 300` or another value."
 std::string remedy_for(RunGroup side) {
-  std::vector<nlohmann::json> swept;
-  for (const FrameRun* run : side) swept.push_back(run->place.swept);
   std::vector<std::string> values;
-  for (const std::string& key : varied_keys(swept)) {
+  for (const std::string& key : varied_keys(swept_of(side))) {
     values.push_back(fmt::format("{}: {}", key, value_text(parameter_of(*side.front(), key))));
   }
   return values.empty() ? "" : fmt::format(" Add `{}` or other values.", fmt::join(values, ", "));

@@ -9,7 +9,6 @@
 #include <map>
 #include <utility>
 
-#include "analysis/estimators/notes.hpp"
 #include "core/named.hpp"
 #include "provenance/words.hpp"
 

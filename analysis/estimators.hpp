@@ -8,7 +8,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "analysis/censored.hpp"
@@ -60,24 +59,6 @@ extern const Estimator mean_over_cycles, mean_over_phi, number_of_the_run, chang
 /// Whether the claim compares waiting times for an event, which may come after the end of a run.
 bool compares_waits(const ClaimSpec& claim);
 
-using PointStatistic = double (*)(std::span<const std::pair<double, double>> points);
-/// Applies `statistic` to the points (cycle, value) of a column at the whole cycles first .. last.
-/// A run that lacks one of these cycles has no value.
-RunValue at_cycles(const FrameRun& run, const NumberColumn& column, double first, double last,
-                   PointStatistic statistic);
-
-/// Mean of a column over the checkpoints at the whole cycles first .. last. A run that lacks one of
-/// these cycles has no value. `name`: the column's name, for use in sentences.
-Scalar over_cycles(const std::string& name, const std::string& column, double first, double last);
-
-/// Width of the bins in phi. Bins begin at integer multiples of this width. Runs reach the same phi
-/// at different cycles, so runs are averaged at equal phi. [choice]
-inline constexpr double phi_bin = 0.002;
-
-/// Mean of a column over phi from `low` to `high`. Straight lines join the means in the run's bins
-/// of phi and are integrated. `name`: the column's name, for use in sentences.
-Scalar over_phi(const std::string& name, const std::string& column, double low, double high);
-
 /// Decides the claim from the mean of `a` minus the mean of `b`. Runs that share a packing form
 /// pairs. Pairs are compared by Student's t, and runs without a partner are left out. If there are
 /// no pairs, the interval is Welch's. Runs that end before an event are censored (censored.hpp). A
@@ -88,22 +69,9 @@ Verdict compare(const Claim& claim, const Scalar& scalar, RunGroup a, RunGroup b
 /// Decides the claim from the mean over runs minus the published number.
 Verdict compare_with(const Claim& claim, const Scalar& scalar, RunGroup runs, double published);
 
-/// Returns for each run the first cycle at which the column is at least `level`. A run without such
-/// a cycle is censored at its last cycle.
-std::vector<Waiting> waits_for(RunGroup runs, const std::string& column, double level);
 /// Returns for each run the cycle of the onset by method 1 (onset.hpp). A run without an onset is
 /// censored at its last cycle.
 std::vector<Waiting> waits_for_onset(RunGroup runs);
-
-/// Estimates log2 of the ratio of the waiting times in `a` and `b` by the log-rank test
-/// (statistics.hpp). `waits` returns the waiting times of a group's runs.
-Verdict compare_waits(const Claim& claim, const std::string& event,
-                      const std::function<std::vector<Waiting>(RunGroup)>& waits, RunGroup a,
-                      RunGroup b);
-
-/// Mean over the items, such as nuclei, of all packings; `packings[k]` has the items of packing k.
-/// The bootstrap draws packings, each with all its items.
-std::optional<Estimate> share(std::span<const std::vector<double>> packings);
 
 /// Converts the number of a run. If the run ended before the event, the result is censored, and its
 /// number is the lower bound RunValue::above. NaN if neither the number nor the bound is known.
@@ -112,6 +80,10 @@ CensoredValue censored_value(const RunValue& value);
 /// Averages `values` (one per run) over the runs of each packing. A mean is censored if one of the
 /// averaged values is censored. Values that are not finite are left out.
 std::vector<CensoredValue> over_packings(RunGroup runs, std::span<const CensoredValue> values);
+
+/// The note of a verdict that uses no runs.
+inline constexpr const char* no_group =
+    "the claim selects no runs, or its runs differ in a swept parameter that is not in the claim";
 
 /// The name of a column, for use in sentences: Measure::words, or the column's text.
 std::string words_of_column(const std::string& column);

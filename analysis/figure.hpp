@@ -5,19 +5,14 @@
 #include <array>
 #include <cstdint>
 #include <functional>
-#include <limits>
-#include <map>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "analysis/chart.hpp"
 #include "analysis/frame.hpp"
 #include "analysis/verdict.hpp"
-#include "provenance/records.hpp"
 
 namespace shearcell {
 

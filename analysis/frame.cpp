@@ -35,17 +35,13 @@ bool is_within(const nlohmann::json& value, const nlohmann::json& wanted) {
   }
   const bool whole = value.is_number_integer() && wanted.is_number_integer();
   if (!value.is_number() || whole) return value == wanted;
-  const auto number = value.get<double>();
-  const auto end = [&](const char* key, double without) {
-    return wanted.contains(key) ? wanted[key].get<double>() : without;
-  };
   const bool range = wanted.is_object();
   if (!range && !wanted.is_number()) return false;
-  const double low = range ? end("min", -infinite) : wanted.get<double>();
-  const double high = range ? end("max", infinite) : low;
+  const auto number = value.get<double>();
+  const double low = range ? wanted.value("min", -infinite) : wanted.get<double>();
+  const double high = range ? wanted.value("max", infinite) : low;
   constexpr double rounded = 1e-6;
-  return (number >= low || number >= low - rounded * std::abs(low)) &&
-         (number <= high || number <= high + rounded * std::abs(high));
+  return number >= low - rounded * std::abs(low) && number <= high + rounded * std::abs(high);
 }
 
 bool has_parameters(const FrameRun& run, const nlohmann::json& where) {
@@ -187,10 +183,10 @@ std::vector<std::string> varied_keys(std::span<const nlohmann::json> variants,
   return keys_telling_apart(list, std::move(in_order));
 }
 
-std::vector<std::string> varied_keys(std::span<const FrameRun> runs, std::string_view first) {
-  std::vector<nlohmann::json> variants;
-  for (const FrameRun& run : runs) variants.push_back(run.place.swept);
-  return varied_keys(variants, first);
+std::vector<nlohmann::json> swept_of(RunGroup runs) {
+  std::vector<nlohmann::json> swept;
+  for (const FrameRun* run : runs) swept.push_back(run->place.swept);
+  return swept;
 }
 
 PackingGroups by_packing(RunGroup group) {

@@ -78,6 +78,10 @@ struct RunValue {
 /// Makes a RunValue. A value that is not finite is missing (`undefined`).
 RunValue measured(double value);
 
+/// Width of the bins in phi. Runs reach the same phi at different cycles, so they are averaged at
+/// equal phi. Bins begin at integer multiples of this width. [choice]
+inline constexpr double phi_bin = 0.002;
+
 // --- Columns ---
 
 /// The value of a parameter, swept or not; null if the run has no such key.
@@ -160,7 +164,8 @@ std::vector<std::string> keys_telling_apart(std::span<const nlohmann::json> vari
 /// is `first`, then `first` is kept.
 std::vector<std::string> varied_keys(std::span<const nlohmann::json> variants,
                                      std::string_view first = "");
-std::vector<std::string> varied_keys(std::span<const FrameRun> runs, std::string_view first = "");
+/// The swept values of each run, for varied_keys().
+std::vector<nlohmann::json> swept_of(RunGroup runs);
 
 /// A plot draws one curve for each combination of values of `keys`. If a curve would average over
 /// the values of another swept key, returns this key, else "". Ignores keys that change only

@@ -145,7 +145,7 @@ class Script {
  public:
   explicit Script(const Table& table) : chart_(table.chart) {
     for (const Series& series : chart_.series) {
-      points_.push_back(points_of(table, series));
+      points_.push_back(points_of(series));
       for (ChartPoint& p : points_.back()) p.x += series.shift;
       std::erase_if(points_.back(),
                     [this](const ChartPoint& p) { return !is_on_log_axes(chart_, p); });
@@ -244,20 +244,19 @@ class Script {
     };
     const std::string above = outside(y_.high, 0.05), below = outside(y_.low, -0.05);
     const bool stated = lines_ && above != below;
-    struct End {
-      std::string range, offset;
+    const auto end = [](const std::optional<double>& fixed, bool holds, std::string otherwise) {
+      return fixed && holds ? digits(*fixed) : otherwise;
     };
-    const auto end = [](const std::optional<double>& fixed, bool holds, std::string otherwise,
-                        const char* beyond) {
-      if (fixed && holds) otherwise = digits(*fixed);
-      return End{otherwise, otherwise == "*" ? beyond : "0"};
+    const auto offset = [](const std::string& end_of_range, const char* beyond) {
+      return end_of_range == "*" ? beyond : "0";
     };
-    const End left = end(x.low, x.clip || x_.low >= x.low, "*", "graph 0.03");
-    const End right = end(x.high, x.clip || x_.high <= x.high, "*", "graph 0.03");
-    const End top = end(y.high, y.clip || y_.high <= y.high, stated ? above : "*", "graph 0.05");
-    const End bottom = end(y.low, y.clip || y_.low >= y.low, stated ? below : "*", "graph 0.05");
-    add("set xrange [{}:{}]\nset yrange [{}:{}]\nset offsets {}, {}, {}, {}\n", left.range,
-        right.range, bottom.range, top.range, left.offset, right.offset, top.offset, bottom.offset);
+    const std::string left = end(x.low, x.clip || x_.low >= x.low, "*");
+    const std::string right = end(x.high, x.clip || x_.high <= x.high, "*");
+    const std::string top = end(y.high, y.clip || y_.high <= y.high, stated ? above : "*");
+    const std::string bottom = end(y.low, y.clip || y_.low >= y.low, stated ? below : "*");
+    add("set xrange [{}:{}]\nset yrange [{}:{}]\nset offsets {}, {}, {}, {}\n", left, right, bottom,
+        top, offset(left, "graph 0.03"), offset(right, "graph 0.03"), offset(top, "graph 0.05"),
+        offset(bottom, "graph 0.05"));
   }
 
   void reference(const ReferenceLine& line) {
@@ -312,46 +311,30 @@ class Script {
                        series.title.empty() ? "notitle" : "title " + literal(markup(series.title)));
   }
 
-  bool has(std::size_t k, const std::optional<double> ChartPoint::*error) const {
-    return std::ranges::any_of(points_[k],
-                               [&](const ChartPoint& p) { return (p.*error).has_value(); });
-  }
-
-  /// gnuplot expressions for the lower end and the length of the error bars. On a logarithmic axis,
-  /// a bar that reaches zero ends at the lowest drawn value, or at Axis::low if that is lower.
-  static std::pair<std::string, std::string> bar(int value, int error, const Axis& axis,
-                                                 const Extent& data) {
-    std::string low = fmt::format("${}-${}", value, error);
-    const double lowest = std::min(data.low, axis.low.value_or(data.low));
-    if (axis.log) low = fmt::format("{0}>0?{0}:{1}", low, digits(lowest > 0 ? lowest : data.low));
-    return {fmt::format("({})", low), fmt::format("(${}+${}-({}))", value, error, low)};
-  }
-
   void errors(std::size_t k, std::vector<std::string>& plots) const {
     const Series& series = chart_.series[k];
-    if (series.band && has(k, &ChartPoint::y_error)) {
+    const bool any =
+        std::ranges::any_of(points_[k], [](const ChartPoint& p) { return p.y_error.has_value(); });
+    if (!any) return;
+    if (series.band) {
       plots.push_back(
           fmt::format("$series{} using 1:($2-$4):($2+$4) with filledcurves fc rgb '{}' fs "
                       "transparent solid 0.2 noborder notitle",
                       k, series.colour));
+      return;
     }
-    if (series.band) return;
+    // On a logarithmic axis, a bar that reaches zero ends at the lowest drawn value, or at
+    // Axis::low if that is lower.
+    std::string low = "$2-$4";
+    const double lowest = std::min(y_.low, chart_.y.low.value_or(y_.low));
+    if (chart_.y.log) low = fmt::format("{0}>0?{0}:{1}", low, digits(lowest > 0 ? lowest : y_.low));
     // Error bars are drawn as arrows. The arrow heads are the caps, 2 px to each side. `yerrorbars`
     // is not used, since gnuplot 5.4 paints white discs behind the points, which hide other curves.
-    const auto add_bars = [&](const std::string& columns) {
-      plots.push_back(fmt::format(
-          "$series{} every {} using {} with vectors heads size screen {},90 fixed lc rgb '{}' lw "
-          "0.7 notitle",
-          k, spacing(series), columns, digits(2.0 / layout_of(chart_).width), series.colour));
-    };
-    if (has(k, &ChartPoint::x_error)) {
-      const auto [low, length] = bar(1, 3, chart_.x, x_);
-      add_bars(fmt::format("{}:2:{}:(0)", low, length));
-    }
-    if (has(k, &ChartPoint::y_error)) {
-      const auto [low, length] = bar(2, 4, chart_.y, y_);
-      add_bars(fmt::format("1:{}:(0):{}", low, length));
-    }
+    plots.push_back(
+        fmt::format("$series{0} every {1} using 1:({2}):(0):($2+$4-({2})) with vectors heads size "
+                    "screen {3},90 "
+                    "fixed lc rgb '{4}' lw 0.7 notitle",
+                    k, spacing(series), low, digits(2.0 / layout_of(chart_).width), series.colour));
   }
 
   void curve(std::size_t k, std::vector<std::string>& plots) const {

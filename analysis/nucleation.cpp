@@ -13,7 +13,6 @@
 #include <numeric>
 #include <set>
 
-#include "analysis/estimators.hpp"
 #include "analysis/published.hpp"
 
 namespace shearcell {

@@ -2,9 +2,7 @@
 // The volume fraction at which crystallization begins, by the two methods of supplement C.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
-#include <optional>
 
 #include "analysis/figure.hpp"
 #include "analysis/statistics.hpp"

@@ -13,15 +13,6 @@
 namespace shearcell {
 namespace {
 
-/// Throws AnalysisError if the name has a character that is special in scripts or in file names.
-void require_plain_name(const std::string& name) {
-  const bool plain = !name.empty() && name.front() != '-' &&
-                     name.find_first_not_of(
-                         "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"
-                         "0123456789_-") == std::string::npos;
-  if (!plain) throw AnalysisError("'" + name + "' cannot be used in names of files");
-}
-
 /// Makes programs write a fixed date into their files.
 constexpr const char* fixed_date = "SOURCE_DATE_EPOCH=0";
 
@@ -51,7 +42,6 @@ std::string fault_of(const char* program, const ProgramOutcome& outcome,
 }  // namespace
 
 void require_own_files(const Table& table, const std::filesystem::path& folder) {
-  require_plain_name(table.name);
   const std::filesystem::path base = folder / table.name;
   const auto is_script = [](std::string_view beginning) {
     return beginning.starts_with(gnuplot_script_beginning);
@@ -69,7 +59,6 @@ void require_own_files(const Table& table, const std::filesystem::path& folder) 
 }
 
 std::filesystem::path draw_svg(const Table& table, const std::filesystem::path& folder) {
-  require_plain_name(table.name);
   std::filesystem::path svg = folder / (table.name + ".svg"), pdf = folder / (table.name + ".pdf");
   const std::string script = table.name + ".gp";
   const TemporaryFolder apart;

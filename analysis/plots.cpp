@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <boost/algorithm/string/replace.hpp>
-#include <cctype>
 #include <cmath>
 #include <iterator>
 #include <map>
@@ -21,10 +20,10 @@
 #include "analysis/claims.hpp"
 #include "analysis/error.hpp"
 #include "analysis/estimators.hpp"
-#include "analysis/estimators/notes.hpp"
 #include "analysis/styles.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/json_text.hpp"
+#include "provenance/words.hpp"
 
 namespace shearcell {
 namespace {
@@ -66,12 +65,6 @@ double value_of(const NumberColumn& column, const Selected& one,
 }
 
 }  // namespace
-
-std::vector<const FrameRun*> PlotRuns::runs() const {
-  std::vector<const FrameRun*> all;
-  for (const Selected& one : drawn) all.push_back(one.run);
-  return all;
-}
 
 PlotRuns selected_by(const PlotSpec& plot, std::span<const FrameRun> runs) {
   PlotRuns selection;
@@ -129,7 +122,8 @@ std::vector<Selected> select(const PlotSpec& plot, const Frame& frame, std::stri
                        words_of(plot.minus));
     return {};
   }
-  require_told_apart(plot.name, selection.runs(), averaged_by(plot, selection.runs()),
+  const std::vector<const FrameRun*> runs = runs_of(drawn);
+  require_told_apart(plot.name, runs, averaged_by(plot, runs),
                      "remove the key `by` of the plot to draw a curve for each variant");
   if (!plot.minus.empty()) {
     const std::string& name = subtracted.front()->name;
@@ -165,26 +159,22 @@ struct Sample {
   std::vector<double> y = {};  ///< values of the columns in columns_of()
 };
 
-/// The samples of one run of a curve.
-struct Trace {
-  const FrameRun* run;
+/// One run of a curve and its samples.
+struct Trace : Selected {
   std::vector<Sample> samples = {};    ///< in the order of the checkpoints
   Missing missing = Missing::nothing;  ///< why y is missing, if y is a measure of the whole run
   /// For each column: the bound RunValue::above if the run ended before the event; otherwise NaN.
   std::vector<double> above = {};
 };
 
+/// Runs that are drawn as one curve.
 struct Curve {
-  std::string variant;  ///< name of the variant in the CSV, with ';' instead of ','
+  json key;             ///< the keys that distinguish curves, and their values in this curve
+  std::string variant;  ///< `key` as text; in the CSV with ';' instead of ','
+  std::vector<Trace> traces = {};
+  std::size_t style = 0;  ///< index in PlotSpec::series; the number of its entries: none
   Text title = {};
   Look look = {};
-  std::vector<Trace> traces = {};
-
-  std::vector<const FrameRun*> runs() const {
-    std::vector<const FrameRun*> all;
-    for (const Trace& trace : traces) all.push_back(trace.run);
-    return all;
-  }
 };
 
 /// A panel before it is drawn.
@@ -195,27 +185,32 @@ struct Panel {
   std::vector<Curve> curves = {};
 };
 
+/// `y` and PlotSpec::also.
+std::vector<ColumnSpec> measures_of(const PlotSpec& plot) {
+  std::vector<ColumnSpec> all = {{plot.y, plot.column}};
+  all.insert(all.end(), plot.also.begin(), plot.also.end());
+  return all;
+}
+
 /// Computes the samples of a run. `cycle` (from cycle_of()) is used if the plot draws one cycle.
-Trace evaluate(const PlotSpec& plot, std::span<const NumberColumn> columns, const NumberColumn& x,
-               const Selected& one, double cycle) {
-  Trace trace{one.run};
-  const auto at = std::ranges::find(one.checkpoints, cycle, &CheckpointMeasures::cycle);
-  const CheckpointMeasures* chosen = at == one.checkpoints.end() ? nullptr : *at;
+void evaluate(const PlotSpec& plot, std::span<const NumberColumn> columns, const NumberColumn& x,
+              double cycle, Trace& trace) {
+  const auto at = std::ranges::find(trace.checkpoints, cycle, &CheckpointMeasures::cycle);
+  const CheckpointMeasures* chosen = at == trace.checkpoints.end() ? nullptr : *at;
   const auto add = [&](double cycle_of_row, double x_value, const CheckpointMeasures* checkpoint) {
     Sample& sample = trace.samples.emplace_back(Sample{cycle_of_row, x_value});
     for (const NumberColumn& column : columns) {
       const bool is_y = &column == columns.data();
       const CheckpointMeasures* row = checkpoint;
-      if (!is_y && row == nullptr && !one.checkpoints.empty()) row = one.checkpoints.front();
-      sample.y.push_back(is_y ? value_of(column, one, checkpoint) : column(*one.run, row));
+      if (!is_y && row == nullptr && !trace.checkpoints.empty()) row = trace.checkpoints.front();
+      sample.y.push_back(is_y ? value_of(column, trace, checkpoint) : column(*trace.run, row));
     }
   };
-  for (std::size_t k = 0; k <= plot.also.size(); ++k) {
-    const Measure* measure =
-        find_measure(k == 0 ? plot.y : plot.also[k - 1].measure, MeasureKind::run);
-    const RunValue value = measure == nullptr ? RunValue{} : measure->of_run(*one.run);
-    if (k == 0) trace.missing = value.missing;
-    trace.above.push_back(one.partners.empty() ? value.above : std::nan(""));
+  for (const ColumnSpec& column : measures_of(plot)) {
+    const Measure* measure = find_measure(column.measure, MeasureKind::run);
+    const RunValue value = measure == nullptr ? RunValue{} : measure->of_run(*trace.run);
+    if (trace.above.empty()) trace.missing = value.missing;
+    trace.above.push_back(trace.partners.empty() ? value.above : std::nan(""));
   }
   switch (against(plot)) {
     case Against::curve:
@@ -229,19 +224,16 @@ Trace evaluate(const PlotSpec& plot, std::span<const NumberColumn> columns, cons
       }
       break;
     case Against::number_of_run:
-      if (is_of_run(plot.y))
-        add(cycle, x(*one.run), nullptr);
-      else if (chosen != nullptr)
-        add(cycle, x(*one.run), chosen);
+      if (is_of_run(plot.y)) chosen = nullptr;
+      if (is_of_run(plot.y) || chosen != nullptr) add(cycle, x(*trace.run), chosen);
       break;
     default:
-      for (const CheckpointMeasures* checkpoint : one.checkpoints) {
+      for (const CheckpointMeasures* checkpoint : trace.checkpoints) {
         const bool whole = checkpoint->cycle == std::floor(checkpoint->cycle);
         if (!draws_runs(plot) && !whole) continue;
-        add(checkpoint->cycle, x(*one.run, checkpoint), checkpoint);
+        add(checkpoint->cycle, x(*trace.run, checkpoint), checkpoint);
       }
   }
-  return trace;
 }
 
 /// Replaces x, a measure of the whole run, by its mean over the runs of the variant, so that these
@@ -265,38 +257,17 @@ void average_x(std::vector<Curve>& curves) {
 
 // --- Group ---
 
-/// A variant as a CSV field without quotes, for readers that do not support RFC 4180. A comma
-/// becomes a semicolon, and so does any character that cannot come from a manifest.
-std::string plain_field(std::string variant) {
-  const auto odd = [](char c) {
-    const auto byte = static_cast<unsigned char>(c);
-    return byte < 0x80 && std::isalnum(byte) == 0 &&
-           std::string_view("=.+-_;: /").find(c) == std::string_view::npos;
-  };
-  std::replace_if(variant.begin(), variant.end(), odd, ';');
-  return variant;
-}
-
-/// Runs that are drawn as one curve.
-struct Group {
-  json key;             ///< the keys that distinguish curves, and their values in this group
-  std::string variant;  ///< `key` as text
-  std::vector<const Selected*> runs = {};
-};
-
 /// The curves of a panel. If PlotSpec::by is set, each value of `by` gets a curve. Otherwise each
 /// variant gets a curve, with one exception: if the plot has panels, or if x is one number per run,
 /// then variants that differ only in x or in the panel's parameter share a curve.
-std::vector<Group> groups_of(const PlotSpec& plot, std::span<const Selected> runs) {
+std::vector<Curve> curves_of(const PlotSpec& plot, std::span<const Selected> runs) {
   const bool by_variant =
       against(plot) != Against::number_of_run && plot.by.empty() && plot.panel.empty();
-  std::vector<json> variants;
-  for (const Selected& one : runs) variants.push_back(one.run->place.swept);
-  std::vector<std::string> keys = varied_keys(variants, plot.x);
+  std::vector<std::string> keys = varied_keys(swept_of(runs_of(runs)), plot.x);
   for (const std::string& used : names_in(plot.x)) std::erase(keys, used);
   std::erase(keys, plot.panel);
   if (!plot.by.empty()) keys = {plot.by};
-  std::map<std::string, Group> groups;
+  std::map<std::string, Curve> by_text;
   for (const Selected& one : runs) {
     json key = json::object();
     for (const std::string& name : keys) {
@@ -304,70 +275,60 @@ std::vector<Group> groups_of(const PlotSpec& plot, std::span<const Selected> run
     }
     if (by_variant) key = one.run->place.swept;
     std::string text = by_variant ? one.run->place.variant : key.empty() ? "all" : words_of(key);
-    Group& group = groups.try_emplace(text, Group{std::move(key), text}).first->second;
-    group.runs.push_back(&one);
+    by_text.try_emplace(text, Curve{std::move(key), text}).first->second.traces.push_back({one});
   }
-  std::vector<Group> found;
-  for (auto& [text, group] : groups) found.push_back(std::move(group));
-  return found;
+  std::vector<Curve> curves;
+  for (auto& [text, curve] : by_text) curves.push_back(std::move(curve));
+  return curves;
 }
 
-/// Title of each curve: the name of its variant or, if it has several variants, of Group::key.
-std::vector<std::string> titles_of(const PlotSpec& plot, std::span<const Group> groups,
-                                   const NameVariants& name) {
+/// Sets the title of each curve: the name of its variant or, if it has several variants, of its
+/// key.
+void set_titles(const PlotSpec& plot, const NameVariants& name, std::span<Curve> curves) {
   std::vector<json> keys;
-  for (const Group& group : groups) keys.push_back(group.key);
+  for (const Curve& curve : curves) keys.push_back(curve.key);
   const auto shared = name ? name(keys) : std::map<json, std::string>();
-  std::vector<std::string> titles;
-  for (const Group& group : groups) {
-    const std::string& first = group.runs.front()->run->name;
-    const bool of_one = std::ranges::all_of(
-        group.runs, [&](const Selected* one) { return one->run->name == first; });
-    titles.push_back(of_one && !first.empty() && plot.panel.empty() ? first
-                     : name && !group.key.empty()                   ? shared.at(group.key)
-                                                                    : group.variant);
+  for (Curve& curve : curves) {
+    const std::string of_variant = plot.panel.empty() ? shared_name(runs_of(curve.traces)) : "";
+    curve.title = !of_variant.empty()          ? of_variant
+                  : name && !curve.key.empty() ? shared.at(curve.key)
+                                               : curve.variant;
   }
-  return titles;
 }
 
-/// For each group, the index of its style in PlotSpec::series. The index is the number of styles if
-/// no style matches the group, or if the style matches several groups. If PlotSpec::listed, styles
-/// are used only if PlotSpec::series contains every parameter in which the groups differ.
-std::vector<std::size_t> styles_for(const PlotSpec& plot, std::span<const Group> groups) {
+/// Sets Curve::style. A curve has no style if none matches, or if the style matches several curves.
+/// If PlotSpec::listed, styles are used only if PlotSpec::series contains every parameter in which
+/// the curves differ.
+void set_styles(const PlotSpec& plot, std::span<Curve> curves) {
   std::vector<json> keys;
-  for (const Group& group : groups) keys.push_back(group.key);
-  const bool own = std::ranges::all_of(varied_keys(keys), [&](const std::string& key) {
+  for (const Curve& curve : curves) keys.push_back(curve.key);
+  const bool used = !plot.listed || std::ranges::all_of(varied_keys(keys), [&](const auto& key) {
     return std::ranges::any_of(plot.series,
-                               [&](const SeriesSpec& s) { return s.where.contains(key); });
+                               [&](const SeriesSpec& one) { return one.where.contains(key); });
   });
-  std::vector<std::size_t> places, used(plot.series.size() + 1);
-  for (const Group& group : groups) {
+  std::vector<std::size_t> count(plot.series.size() + 1);  // curves with this style
+  for (Curve& curve : curves) {
     const auto style = std::ranges::find_if(plot.series, [&](const SeriesSpec& one) {
-      return one.column.empty() && (own || !plot.listed) &&
-             has_parameters(*group.runs.front()->run, one.where);
+      return used && one.column.empty() && has_parameters(*curve.traces.front().run, one.where);
     });
-    places.push_back(static_cast<std::size_t>(style - plot.series.begin()));
-    ++used[places.back()];
+    curve.style = static_cast<std::size_t>(style - plot.series.begin());
+    ++count[curve.style];
   }
-  for (std::size_t& place : places) {
-    if (used[place] > 1) place = plot.series.size();
+  for (Curve& curve : curves) {
+    if (count[curve.style] > 1) curve.style = plot.series.size();
   }
-  return places;
-}
-
-std::string colour_of(const SeriesSpec& series) {
-  const auto name = std::ranges::find(colour_names, series.colour);
-  return name == colour_names.end()
-             ? series.colour
-             : safe_colours[static_cast<std::size_t>(name - colour_names.begin())];
 }
 
 /// Sets the colour and symbol that are given in the series entry.
 void set_look(const SeriesSpec& stated, std::string& colour, int& point) {
-  if (!stated.colour.empty()) colour = colour_of(stated);
-  const auto symbol = static_cast<std::size_t>(std::ranges::find(marker_names, stated.marker) -
-                                               marker_names.begin());
-  if (symbol < marker_names.size()) point = symbol == 0 ? 0 : curve_symbol(symbol - 1);
+  if (!stated.colour.empty()) colour = stated.colour;
+  const auto name = std::ranges::find(colour_names, stated.colour) - colour_names.begin();
+  if (name < std::ssize(colour_names)) colour = safe_colours[static_cast<std::size_t>(name)];
+  const auto symbol = std::ranges::find(marker_names, stated.marker) - marker_names.begin();
+  if (symbol == 0)
+    point = 0;
+  else if (symbol < std::ssize(marker_names))
+    point = curve_symbol(static_cast<std::size_t>(symbol) - 1);
 }
 
 /// The colours and symbols that the manifest states: in this plot, then in its other plots. If two
@@ -393,7 +354,7 @@ std::vector<StatedLook> stated_looks(const PlotSpec& plot, const Plots& others) 
 /// Sets the title and the style given in the series entry.
 void apply(const SeriesSpec& stated, const PlotSpec& plot, bool named, Curve& curve) {
   if (!stated.label.empty() && !(plot.listed && named)) curve.title = formula(stated.label);
-  if (!stated.colour.empty()) curve.look.join = curve.look.alone = Join::line;
+  if (!stated.colour.empty()) curve.look.join = Join::line;
   set_look(stated, curve.look.colour, curve.look.point);
 }
 
@@ -404,33 +365,78 @@ void set_curves(const Looks& looks, const NameVariants& names, Panel& panel) {
   if (against(plot) != Against::curve) columns.emplace_back(plot.y);
   for (const ColumnSpec& one : plot.also) columns.emplace_back(one.measure);
   const NumberColumn x(plot.x);
-  const std::vector<Group> groups = groups_of(plot, panel.selected);
-  const std::vector<std::string> titles = titles_of(plot, groups, names);
-  const std::vector<std::size_t> styles = styles_for(plot, groups);
-  using Place = std::tuple<std::size_t, json, std::size_t>;  // sort key: style, values, group
-  std::map<Place, Curve> ordered;
-  for (std::size_t k = 0; k < groups.size(); ++k) {
-    const auto& [key, variant, members] = groups[k];
-    Curve curve{plain_field(variant), Text(titles[k])};
-    for (const Selected* one : members) {
-      curve.traces.push_back(evaluate(plot, columns, x, *one, panel.cycle));
+  panel.curves = curves_of(plot, panel.selected);
+  set_titles(plot, names, panel.curves);
+  set_styles(plot, panel.curves);
+  std::erase_if(panel.curves, [](const Curve& curve) {
+    return std::ranges::all_of(curve.traces,
+                               [](const Trace& one) { return one.checkpoints.empty(); });
+  });
+  for (Curve& curve : panel.curves) {
+    for (Trace& trace : curve.traces) evaluate(plot, columns, x, panel.cycle, trace);
+    curve.look = looks.of(runs_of(curve.traces), curve.key);
+    if (curve.style < plot.series.size()) {
+      apply(plot.series[curve.style], plot, curve.traces.front().run->named, curve);
     }
-    const bool begun =
-        std::ranges::any_of(members, [](const Selected* one) { return !one->checkpoints.empty(); });
-    if (!begun) continue;
-    curve.look = looks.of(curve.runs(), key);
-    if (styles[k] < plot.series.size()) {
-      apply(plot.series[styles[k]], plot, members.front()->run->named, curve);
-    }
-    json values = json::array();
-    for (const auto& [name, value] : key.items()) values.push_back(value);
-    ordered.emplace(Place{styles[k], std::move(values), k}, std::move(curve));
+    std::ranges::replace(curve.variant, ',', ';');  // some readers of CSV do not know quotes
   }
-  for (auto& [place, curve] : ordered) panel.curves.push_back(std::move(curve));
+  std::ranges::stable_sort(panel.curves, {}, [](const Curve& curve) {
+    return std::pair(curve.style, std::vector<json>(curve.key.begin(), curve.key.end()));
+  });
   if (is_measured_of_run(plot.x) && !draws_runs(plot)) average_x(panel.curves);
 }
 
 // --- Average ---
+
+/// A quantity with the columns NAME_mean_UNIT (or NAME_rms_UNIT) and NAME_standard_error_UNIT.
+struct MeasureColumn {
+  std::string name;
+  std::string unit = {};  ///< as in column names: "d", "percent" or ""
+  bool rms = false;       ///< root mean square over runs instead of the mean
+};
+
+/// Name of the column for `statistic`, which is "mean" or "standard_error".
+std::string column_name(const MeasureColumn& measure, std::string_view statistic) {
+  if (measure.rms && statistic == "mean") statistic = "rms";
+  return fmt::format("{}_{}{}{}", measure.name, statistic, measure.unit.empty() ? "" : "_",
+                     measure.unit);
+}
+
+/// Splits a measure's name: "deviator_Pa" is the column "deviator" with the unit "Pa".
+MeasureColumn column_of(std::string_view measure, std::string_view of) {
+  std::string name(measure);
+  std::string unit(of == "%" ? "percent" : of == "1" ? "" : of);
+  if (unit.starts_with("1/")) unit.replace(0, 2, "per_");
+  boost::replace_first(unit, "/", "_per_");  // "m/s"
+  std::ranges::replace(unit, ' ', '_');
+  std::erase(unit, '^');
+  if (!unit.empty() && name.ends_with("_" + unit)) name.resize(name.size() - unit.size() - 1);
+  return {std::move(name), std::move(unit)};
+}
+
+/// Finds a measure of checkpoints (a number or a curve) or of whole runs; null if no measure fits.
+const Measure* find_plotted(std::string_view text) {
+  const Measure* measure = find_measure(text);
+  if (measure == nullptr) measure = find_measure(text, MeasureKind::run);
+  return measure != nullptr ? measure : find_curve(text);
+}
+
+/// The column of a measure or an expression. If `name` is not "", it replaces the column's name.
+MeasureColumn column_for(const std::string& text, const std::string& name = {}) {
+  MeasureColumn column = {is_expression(text) ? "(" + text + ")" : text};
+  if (const Measure* measure = find_plotted(text)) column = column_of(text, measure->unit);
+  if (!name.empty()) column.name = name;
+  return column;
+}
+
+std::vector<MeasureColumn> columns_of(const PlotSpec& plot) {
+  std::vector<MeasureColumn> columns;
+  for (const auto& [measure, name] : measures_of(plot))
+    columns.push_back(column_for(measure, name));
+  if (!plot.minus.empty()) columns[0].name += "_difference";
+  columns[0].rms = plot.show == Show::rms;
+  return columns;
+}
 
 /// Mean over packings of values that may be censored. `runs` counts all packings in the mean.
 RunStatistics mean_with_censored(RunGroup runs, std::span<const CensoredValue> values) {
@@ -455,7 +461,7 @@ struct Bin {
 std::vector<Bin> average(const PlotSpec& plot, const Curve& curve,
                          std::span<const MeasureColumn> columns) {
   const Against what = against(plot);
-  const bool by_x = what == Against::number_of_run || what == Against::curve;
+  const bool by_cycle = what == Against::cycle || what == Against::measure;
   struct Members {
     std::vector<const FrameRun*> runs;
     std::vector<std::vector<double>> values;        // for each run: x, then all y
@@ -466,18 +472,19 @@ std::vector<Bin> average(const PlotSpec& plot, const Curve& curve,
   for (const Trace& trace : curve.traces) {
     std::map<double, std::vector<Sample>> own;
     for (const Sample& sample : trace.samples) {
-      if (what == Against::cycle || what == Against::measure) own[sample.cycle].push_back(sample);
-      if (what == Against::phi && std::isfinite(sample.x)) {
+      if (by_cycle) own[sample.cycle].push_back(sample);
+      if (by_cycle || !std::isfinite(sample.x)) continue;
+      if (what == Against::phi) {
         own[std::floor(sample.x / phi_bin)].push_back(sample);
+        continue;
       }
-      if (!by_x || !std::isfinite(sample.x)) continue;
       const bool has_y = std::isfinite(sample.y.front());
       if (!has_y && trace.missing != Missing::nothing) ++bins[sample.x].missing[trace.missing];
       // A run without y still counts in the means of the other columns.
       if (has_y || trace.missing != Missing::nothing) own[sample.x].push_back(sample);
     }
     for (const auto& [at, samples] : own) {
-      if (samples.size() > 1 && (what == Against::cycle || what == Against::measure)) {
+      if (samples.size() > 1 && by_cycle) {
         throw AnalysisError(
             fmt::format("run {} has two checkpoints of cycle {}", trace.run->stage.id, at));
       }
@@ -510,7 +517,7 @@ std::vector<Bin> average(const PlotSpec& plot, const Curve& curve,
       }
       return statistics(over_packings(members.runs, values));
     };
-    bin.x = over(0, [](const auto& values) { return over_runs(values); });
+    bin.x = over(0, over_runs);
     for (std::size_t k = 0; k < columns.size(); ++k) {
       std::vector<CensoredValue> values;
       for (std::size_t r = 0; r < members.runs.size(); ++r) {
@@ -520,7 +527,7 @@ std::vector<Bin> average(const PlotSpec& plot, const Curve& curve,
       }
       const bool censored = std::ranges::count(values, true, &CensoredValue::censored) > 0;
       bin.y.push_back(censored ? mean_with_censored(members.runs, values)
-                               : over(k + 1, [&](const auto& of) { return columns[k].over(of); }));
+                               : over(k + 1, columns[k].rms ? rms_over_runs : over_runs));
     }
     bin.values = static_cast<std::size_t>(std::ranges::count_if(
         members.values, [](const auto& of_run) { return std::isfinite(of_run[1]); }));
@@ -531,43 +538,6 @@ std::vector<Bin> average(const PlotSpec& plot, const Curve& curve,
 
 // --- Draw ---
 
-/// Splits a measure's name: "deviator_Pa" is the column "deviator" with the unit "Pa".
-MeasureColumn column_of(std::string_view measure, std::string_view of) {
-  std::string name(measure);
-  std::string unit(of == "%" ? "percent" : of == "1" ? "" : of);
-  if (unit.starts_with("1/")) unit.replace(0, 2, "per_");
-  if (const auto slash = unit.find('/'); slash != std::string::npos) {
-    unit.replace(slash, 1, "_per_");  // "m/s"
-  }
-  std::ranges::replace(unit, ' ', '_');
-  std::erase(unit, '^');
-  if (!unit.empty() && name.ends_with("_" + unit)) name.resize(name.size() - unit.size() - 1);
-  return {std::move(name), std::move(unit)};
-}
-
-/// Finds a measure of checkpoints (a number or a curve) or of whole runs; null if no measure fits.
-const Measure* find_plotted(std::string_view text) {
-  const Measure* measure = find_measure(text);
-  if (measure == nullptr) measure = find_measure(text, MeasureKind::run);
-  return measure != nullptr ? measure : find_curve(text);
-}
-
-/// The column of a measure or an expression. If `name` is not "", it replaces the column's name.
-MeasureColumn column_for(const std::string& text, const std::string& name = {}) {
-  MeasureColumn column = {is_expression(text) ? "(" + text + ")" : text, ""};
-  if (const Measure* measure = find_plotted(text)) column = column_of(text, measure->unit);
-  if (!name.empty()) column.name = name;
-  return column;
-}
-
-std::vector<MeasureColumn> columns_of(const PlotSpec& plot) {
-  std::vector<MeasureColumn> columns = {column_for(plot.y, plot.column)};
-  if (!plot.minus.empty()) columns[0].name += "_difference";
-  columns[0].rms = plot.show == Show::rms;
-  for (const ColumnSpec& one : plot.also) columns.push_back(column_for(one.measure, one.name));
-  return columns;
-}
-
 /// The axis of a measure. Its name is the measure's name with spaces: "largest crystallite". A unit
 /// at the end of the measure's name becomes the unit of the axis.
 Axis named_axis(std::string_view measure, std::string_view unit) {
@@ -575,16 +545,17 @@ Axis named_axis(std::string_view measure, std::string_view unit) {
   const bool has_unit = name.size() < measure.size();
   std::ranges::replace(name, '_', ' ');
   if (!has_unit) return {.name = std::move(name)};
-  std::string of(unit);
-  while (of.find("^2") != std::string::npos) of.replace(of.find("^2"), 2, "²");
-  return {.name = std::move(name), .unit = Text(of)};
+  return {.name = std::move(name), .unit = boost::replace_all_copy(std::string(unit), "^2", "²")};
 }
 
 Axis axis_of(const std::string& key) {
-  if (key == "cycle") return cycle_axis;
-  if (key == "phi") return phi_axis;
-  if (key == "crystalline_percent") return crystalline_axis;
-  if (key == "mean_overlap_d") return overlap_axis;
+  static const std::map<std::string, Axis> known = {
+      {"cycle", cycle_axis},
+      {"phi", phi_axis},
+      {"crystalline_percent", {.name = "percentage crystalline", .unit = "%", .low = 0}},
+      {"mean_overlap_d",
+       {.name = "mean overlap", .symbol = formula("⟨$δ$⟩"), .unit = formula("$d$")}}};
+  if (const auto found = known.find(key); found != known.end()) return found->second;
   if (const Measure* measure = find_plotted(key)) return named_axis(key, measure->unit);
   return is_expression(key) ? Axis{.name = key} : named_axis(key, "1");
 }
@@ -620,76 +591,79 @@ Axis x_axis(const PlotSpec& plot, std::span<const Selected> runs) {
   return {.name = fmt::format("{} of the stiffening", word), .whole = true};
 }
 
-/// The chart series of a curve, without its points.
+/// The series of a curve, without points.
 Series series_of(const Curve& curve) {
   return {.title = curve.title,
           .colour = curve.look.colour,
           .point = curve.look.point,
-          .join = curve.look.join,
-          .filter = {"variant", curve.variant}};
+          .join = Join::line,
+          .variant = curve.variant};
 }
 
 /// Removes the symbols of a curve, since symbols at every point would hide the line.
 void leave_out_symbol(const Curve& curve, Series& series) {
   series.point = 0;
-  series.join = curve.look.alone;
+  series.join = curve.look.join;
 }
 
 /// A thin line or a cloud of points for each run. Only the first run of a curve has a title.
 std::vector<Series> series_of_runs(const Panel& panel) {
+  const bool of_run = against(panel.plot) == Against::number_of_run;  // one line for each seed
   std::vector<Series> all;
   for (const Curve& curve : panel.curves) {
-    std::map<std::uint64_t, std::map<double, double>> by_seed;  // used if x has one value per run
-    std::vector<std::vector<ChartPoint>> traces;
-    for (const Trace& trace : curve.traces) {
-      std::vector<ChartPoint>& points = traces.emplace_back();
+    std::map<std::uint64_t, std::vector<ChartPoint>> lines;
+    for (std::uint64_t k = 0; k < curve.traces.size(); ++k) {
+      const Trace& trace = curve.traces[k];
+      std::vector<ChartPoint>& points = lines[of_run ? trace.run->place.seed : k];
       for (const Sample& sample : trace.samples) {
         const double y = sample.y.front();
-        if (!std::isfinite(sample.x) || !std::isfinite(y)) continue;
-        points.push_back({sample.x, y});
-        by_seed[trace.run->place.seed][sample.x] = y;
+        if (std::isfinite(sample.x) && std::isfinite(y)) points.push_back({sample.x, y});
       }
     }
-    if (against(panel.plot) == Against::number_of_run) {
-      traces.clear();
-      for (const auto& [seed, values] : by_seed) {
-        std::vector<ChartPoint>& points = traces.emplace_back();
-        for (const auto& [x, y] : values) points.push_back({x, y});
-      }
-    }
-    if (against(panel.plot) == Against::curve) {
-      std::erase_if(traces, [](const auto& points) { return points.empty(); });
+    if (!draws_every_cycle(panel.plot)) {
+      std::erase_if(lines, [](const auto& line) { return line.second.empty(); });
     }
     Text title = curve.title;
-    for (std::vector<ChartPoint>& points : traces) {
+    for (auto& [k, points] : lines) {
+      if (of_run) std::ranges::sort(points, {}, &ChartPoint::x);
       Series& series = all.emplace_back(series_of(curve));
       series.title = std::exchange(title, Text());
       series.thin = true;
       if (panel.plot.show == Show::scatter) series.join = Join::none;
-      const bool of_rows = against(panel.plot) != Against::number_of_run;
-      if (of_rows && panel.plot.show != Show::scatter) leave_out_symbol(curve, series);
+      if (!of_run && panel.plot.show != Show::scatter) leave_out_symbol(curve, series);
       series.points = std::move(points);
     }
   }
   return all;
 }
 
+/// The means of column k of y, as points.
+std::vector<ChartPoint> mean_points(Against what, std::span<const Bin> bins, std::size_t k) {
+  std::vector<ChartPoint> points;
+  for (const Bin& bin : bins) {
+    const bool mean_x = what == Against::phi || what == Against::measure;
+    const std::optional<double> x = mean_x ? bin.x.mean : bin.at;
+    const RunStatistics& y = bin.y[k];
+    if (!x || !y.mean) continue;
+    ChartPoint& point = points.emplace_back(ChartPoint{*x, *y.mean});
+    if (what == Against::phi) point.x_error = bin.x.standard_error;
+    point.y_error = y.standard_error;
+    point.runs = static_cast<double>(y.runs);
+  }
+  return points;
+}
+
 /// If runs end at different cycles, the mean over the remaining runs would jump. The mean therefore
 /// ends where the first run ends, and the longer runs continue as thin lines. Returns whether the
 /// runs end at different cycles.
-bool follow_runs(const Curve& curve, std::span<const Bin> bins, bool rms, Series& mean,
+bool follow_runs(const Curve& curve, double last_cycle, bool rms, Series& mean,
                  std::vector<Series>& single) {
   double first_end = infinite;
   for (const Trace& trace : curve.traces) {
     if (!trace.samples.empty()) first_end = std::min(first_end, trace.samples.back().cycle);
   }
-  if (bins.back().at <= first_end) return false;
-  mean.columns = {};
-  for (const Bin& bin : bins) {
-    if (bin.at > first_end || !bin.y.front().mean) continue;
-    mean.points.push_back({bin.at, *bin.y.front().mean, std::nullopt, bin.y.front().standard_error,
-                           static_cast<double>(bin.y.front().runs)});
-  }
+  if (last_cycle <= first_end) return false;
+  std::erase_if(mean.points, [&](const ChartPoint& point) { return point.x > first_end; });
   for (const Trace& trace : curve.traces) {
     Series line{.colour = mean.colour, .point = 0, .join = Join::line, .thin = true};
     for (const Sample& sample : trace.samples) {
@@ -703,66 +677,55 @@ bool follow_runs(const Curve& curve, std::span<const Bin> bins, bool rms, Series
   return true;
 }
 
-/// Whether the table has columns that count the runs without a value of y.
-bool counts_missing(const PlotSpec& plot) {
-  return against(plot) == Against::number_of_run &&
-         find_measure(plot.y, MeasureKind::run) != nullptr;
-}
+/// A column of the table of means, and its cell in the row of a bin.
+struct BinColumn {
+  std::string name;
+  std::function<TableCell(const Bin& bin)> cell;
+};
 
-/// A table without rows, with the columns of the means.
-Table table_of_means(const Panel& panel, std::span<const MeasureColumn> columns) {
+std::vector<BinColumn> bin_columns(const Panel& panel, std::span<const MeasureColumn> columns) {
   const PlotSpec& plot = panel.plot;
   const Against what = against(plot);
-  const Measure* curve = find_curve(plot.y);
-  const MeasureColumn x = column_for(plot.x);
-  Table table{.name = plot.name, .columns = {"variant"}};
+  std::vector<BinColumn> all;
+  const auto add = [&](std::string name, auto cell) { all.push_back({std::move(name), cell}); };
+  const auto add_means = [&](const MeasureColumn& column, auto statistics) {
+    add(column_name(column, "mean"), [=](const Bin& bin) { return statistics(bin).mean; });
+    add(column_name(column, "standard_error"),
+        [=](const Bin& bin) { return statistics(bin).standard_error; });
+  };
+  const auto x_of = [](const Bin& bin) { return bin.x; };
   if (what == Against::phi) {
-    for (const char* name : {"phi_low", "phi_high"}) table.columns.emplace_back(name);
-    add_columns(x, table.columns);
-  } else if (what == Against::cycle || what == Against::measure) {
-    table.columns.emplace_back("cycle");
+    add("phi_low", [](const Bin& bin) { return bin.at * phi_bin; });
+    add("phi_high", [](const Bin& bin) { return (bin.at + 1) * phi_bin; });
+    add_means(column_for(plot.x), x_of);
+  } else if (draws_every_cycle(plot)) {
+    add("cycle", [](const Bin& bin) { return static_cast<std::int64_t>(bin.at); });
   } else {
-    table.columns.emplace_back(curve != nullptr ? std::string(curve->x) : plot.x);
+    const Measure* curve = find_curve(plot.y);
+    add(curve != nullptr ? std::string(curve->x) : plot.x, [](const Bin& bin) { return bin.at; });
   }
-  for (const MeasureColumn& column : columns) add_columns(column, table.columns);
-  if (what == Against::measure) add_columns(x, table.columns);
-  table.columns.emplace_back("runs");
-  for (std::size_t k = 1; k <= plot.drawn; ++k)
-    table.columns.emplace_back(columns[k].name + "_runs");
-  if (counts_missing(plot)) {
-    for (const char* name : {"runs_ended_before", "runs_began_after", "runs_unclear"}) {
-      table.columns.emplace_back(name);
-    }
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    add_means(columns[k], [k](const Bin& bin) { return bin.y[k]; });
   }
-  const bool at_cycle =
-      what == Against::curve || (what == Against::number_of_run && !is_of_run(plot.y));
-  if (at_cycle) table.columns.emplace_back("cycle");
-  return table;
-}
-
-void add_rows(const Panel& panel, const Curve& curve, std::span<const Bin> bins, Table& table) {
-  const Against what = against(panel.plot);
-  for (const Bin& bin : bins) {
-    TableRow& row = table.rows.emplace_back(TableRow{curve.variant});
-    if (what == Against::phi) {
-      row.insert(row.end(), {bin.at * phi_bin, (bin.at + 1) * phi_bin});
-      add_values(bin.x, row);
-    } else if (what == Against::cycle || what == Against::measure) {
-      row.emplace_back(static_cast<std::int64_t>(bin.at));
-    } else {
-      row.emplace_back(bin.at);
-    }
-    for (const RunStatistics& statistics : bin.y) add_values(statistics, row);
-    if (what == Against::measure) add_values(bin.x, row);
-    for (std::size_t k = 0; k <= panel.plot.drawn; ++k) row.emplace_back(bin.y[k].runs);
-    if (counts_missing(panel.plot)) {
-      for (const Missing why : {Missing::too_short, Missing::too_late, Missing::undefined}) {
+  if (what == Against::measure) add_means(column_for(plot.x), x_of);
+  for (std::size_t k = 0; k <= plot.drawn; ++k) {
+    add(k == 0 ? "runs" : columns[k].name + "_runs", [k](const Bin& bin) { return bin.y[k].runs; });
+  }
+  if (what == Against::number_of_run && find_measure(plot.y, MeasureKind::run) != nullptr) {
+    const std::pair<const char*, Missing> reasons[] = {{"runs_ended_before", Missing::too_short},
+                                                       {"runs_began_after", Missing::too_late},
+                                                       {"runs_unclear", Missing::undefined}};
+    for (const auto& [name, why] : reasons) {
+      add(name, [why = why](const Bin& bin) {
         const auto count = bin.missing.find(why);
-        row.emplace_back(count == bin.missing.end() ? std::size_t{0} : count->second);
-      }
+        return count == bin.missing.end() ? std::size_t{0} : count->second;
+      });
     }
-    if (row.size() < table.columns.size()) row.emplace_back(panel.cycle);
   }
+  if (what == Against::curve || (what == Against::number_of_run && !is_of_run(plot.y))) {
+    add("cycle", [cycle = panel.cycle](const Bin&) { return cycle; });
+  }
+  return all;
 }
 
 /// The table and chart of a plot of single runs: one row for each sample.
@@ -825,8 +788,7 @@ void require_different_titles(std::span<const Curve> curves) {
 
 /// Sets title and style of the curve of column k of y. `alone`: each column has only one curve.
 void name_y(const PlotSpec& plot, std::size_t k, bool alone, Series& series) {
-  const std::string& measure = k == 0 ? plot.y : plot.also[k - 1].measure;
-  const std::string& name = k == 0 ? plot.column : plot.also[k - 1].name;
+  const auto [measure, name] = measures_of(plot)[k];
   // The columns of a single curve differ in colour, the columns of several curves in symbol.
   if (alone) series.colour = safe_colours[k % safe_colours.size()];
   series.point = alone ? curve_symbol(k) : series.point - static_cast<int>(k % 2);
@@ -847,7 +809,7 @@ void add_mark(const Panel& panel, Table& table) {
   const NumberColumn x(mark.x), y(mark.y);
   Series series{.title = formula(mark.label), .colour = "#000000"};
   for (const Curve& curve : panel.curves) {
-    const std::vector<const FrameRun*> runs = curve.runs();
+    const std::vector<const FrameRun*> runs = runs_of(curve.traces);
     const auto over = [&](const NumberColumn& column) {
       std::vector<double> values;
       for (const FrameRun* run : runs) values.push_back(column(*run));
@@ -863,39 +825,35 @@ void add_mark(const Panel& panel, Table& table) {
 Table draw(const Panel& panel) {
   const PlotSpec& plot = panel.plot;
   const Against what = against(plot);
-  const bool at_one_cycle = what == Against::number_of_run || what == Against::curve;
-  if (draws_runs(plot) && !at_one_cycle) return table_of_runs(panel);
-  const std::vector<MeasureColumn> columns = columns_of(plot);
+  if (draws_runs(plot) && draws_every_cycle(plot)) return table_of_runs(panel);
   require_different_titles(panel.curves);
-  Table table = table_of_means(panel, columns);
+  const std::vector<MeasureColumn> columns = columns_of(plot);
+  const std::vector<BinColumn> cells = bin_columns(panel, columns);
+  Table table{.name = plot.name, .columns = {"variant"}};
+  for (const BinColumn& one : cells) table.columns.emplace_back(one.name);
   std::vector<Series> single;
   std::size_t with_value = 0;
-  const std::string x = what == Against::phi || what == Against::measure
-                            ? column_name(column_for(plot.x), "mean")
-                            : table.columns[1].name;
   for (const Curve& curve : panel.curves) {
     const std::vector<Bin> bins = average(plot, curve, columns);
-    add_rows(panel, curve, bins, table);
-    for (const Bin& bin : bins) with_value += bin.values;
+    for (const Bin& bin : bins) {
+      TableRow& row = table.rows.emplace_back(TableRow{curve.variant});
+      for (const BinColumn& one : cells) row.push_back(one.cell(bin));
+      with_value += bin.values;
+    }
     Series series = series_of(curve);
     series.band = what != Against::number_of_run;
-    if (what == Against::phi) series.columns.x_error = "phi_standard_error";
     if (what == Against::curve) leave_out_symbol(curve, series);
     // If x has one value for each run, points at different x come from different runs.
-    if (what != Against::number_of_run) series.runs = by_packing(curve.runs()).size();
-    if (what == Against::cycle && !bins.empty() &&
-        follow_runs(curve, bins, columns[0].rms, series, single)) {
-      table.chart.note = "Thin lines: single runs, after the shortest run of the curve has ended";
-    }
+    if (what != Against::number_of_run) series.runs = by_packing(runs_of(curve.traces)).size();
     for (std::size_t k = 0; k <= plot.drawn; ++k) {
       Series& drawn = table.chart.series.emplace_back(series);
-      if (!series.points.empty() && k == 0) continue;  // follow_runs() has set the points
-      drawn.points.clear();
-      drawn.columns = columns_against(x, columns[k]);
-      drawn.columns.x_error = series.columns.x_error;
+      drawn.points = mean_points(what, bins, k);
+      if (k == 0 && what == Against::cycle && !bins.empty() &&
+          follow_runs(curve, bins.back().at, columns[0].rms, drawn, single)) {
+        table.chart.note = "Thin lines: single runs, after the shortest run of the curve has ended";
+      }
       if (plot.drawn == 0) continue;
       name_y(plot, k, panel.curves.size() == 1, drawn);
-      if (k > 0) drawn.columns.runs = columns[k].name + "_runs";
       if (what == Against::number_of_run && !bins.empty()) {
         drawn.shift = static_cast<double>(k) * (bins.back().at - bins.front().at) / 60;
       }
@@ -903,7 +861,7 @@ Table draw(const Panel& panel) {
   }
   std::ranges::move(single, std::back_inserter(table.chart.series));
   if (plot.mark) add_mark(panel, table);
-  if (!at_one_cycle) return table;
+  if (draws_every_cycle(plot)) return table;
   if (draws_runs(plot)) table.chart.series = series_of_runs(panel);
   if (panel.curves.size() == 1 && plot.drawn == 0) {
     for (Series& series : table.chart.series) series.title = {};
@@ -955,9 +913,8 @@ void note_equal_looks(const Panel& panel, Table& table) {
     ++titled;
   }
   if (panel.curves.size() < 2 || looks.size() == titled) return;
-  std::string& note = table.chart.note;
-  note += (note.empty() ? "" : ". ") +
-          std::string("Some curves look the same, because there are more curves than styles");
+  add_note(table.chart.note, "Some curves look the same, because there are more curves than styles",
+           ". ");
 }
 
 /// Adds the parameter of the panel as the second column. Changes nothing if the column exists.
@@ -975,7 +932,7 @@ void share_ranges(std::vector<Table>& tables) {
   std::array<double, 2> low = {infinite, infinite}, high = {-infinite, -infinite};
   for (const Table& table : tables) {
     for (const Series& series : table.chart.series) {
-      for (const ChartPoint& p : points_of(table, series)) {
+      for (const ChartPoint& p : points_of(series)) {
         if (!is_on_log_axes(table.chart, p)) continue;
         const double error = table.chart.y.log ? 0 : p.y_error.value_or(0);
         low = {std::min(low[0], p.x), std::min(low[1], p.y - error)};
@@ -1026,7 +983,7 @@ FigureResult make_plot(const PlotSpec& plot, const Frame& frame, const NameVaria
     table.chart.y = axis_of(plot.y);
     if (!plot.minus.empty()) table.chart.y.name = Text("difference in ") + table.chart.y.name;
     if (plot.show == Show::rms) table.chart.y.name = Text("rms ") + table.chart.y.name;
-    if (!less.empty()) table.chart.note += (table.chart.note.empty() ? "" : ". ") + less;
+    if (!less.empty()) add_note(table.chart.note, less, ". ");
     note_equal_looks(panel, table);
     adapt(table.chart.x, plot.xlabel, plot.log == LogAxes::x || plot.log == LogAxes::xy);
     adapt(table.chart.y, plot.ylabel, plot.log == LogAxes::y || plot.log == LogAxes::xy);

@@ -11,7 +11,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "analysis/claims.hpp"
@@ -117,9 +116,15 @@ struct PlotRuns {
   std::vector<Selected> drawn = {};
   std::vector<const FrameRun*> subtracted = {};  ///< runs with the parameters PlotSpec::minus
   std::vector<const FrameRun*> alone = {};  ///< left out, since no `subtracted` has their packing
-
-  std::vector<const FrameRun*> runs() const;  ///< of `drawn`
 };
+
+/// The runs of a list whose items have a member `run`.
+template <class Items>
+std::vector<const FrameRun*> runs_of(const Items& items) {
+  std::vector<const FrameRun*> runs;
+  for (const auto& item : items) runs.push_back(item.run);
+  return runs;
+}
 
 /// Selects the runs and checkpoints that the plot draws. With PlotSpec::minus, a checkpoint needs a
 /// partner at the same cycle.

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <numeric>
 #include <set>
 #include <utility>
 
@@ -65,12 +64,10 @@ std::vector<AmplitudeRuns> by_amplitude(std::span<const FrameRun> runs) {
 }
 
 Looks::Looks(const Frame& frame, std::vector<StatedLook> stated, std::vector<std::string> shared)
-    : variants_(frame.variants), stated_(std::move(stated)), shared_(std::move(shared)) {
-  if (variants_.empty()) {
-    for (const FrameRun& run : frame.runs) variants_.push_back(run.place.swept);
-  }
-  keys_ = varied_keys(variants_, "experiment");
-}
+    : variants_(frame.variants.empty() ? swept_of(pointers(frame.runs)) : frame.variants),
+      keys_(varied_keys(variants_, "experiment")),
+      stated_(std::move(stated)),
+      shared_(std::move(shared)) {}
 
 Look Looks::of(RunGroup curve, const json& key) const {
   const json& swept = curve.front()->place.swept;
@@ -117,19 +114,14 @@ Look Looks::of(RunGroup curve, const json& key) const {
   Rank first = rank_of(variant, among, of_colour);
   Rank rest = rank_of(variant, among, all.subspan(of_colour.size()));
   // Colour and symbol change together if only one key varies, or if the keys have more values than
-  // there are colours or symbols. When the pairs of colour and symbol would repeat, the symbols
-  // shift by one. 7 colours and 10 symbols then give 70 pairs, and dashes double this number.
-  std::size_t alone = rest.rank, pairs = 0;
+  // there are colours or symbols.
+  bool dashed = rest.rank % 2 == 1;
   if (rest.count <= 1 || first.count > palette.size() || rest.count > curve_symbols) {
-    const std::size_t rank = first.rank * std::max<std::size_t>(1, rest.count) + rest.rank;
-    first.rank = rank;
-    rest.rank = rank + rank / std::lcm(palette.size(), curve_symbols);
-    alone = rank / palette.size();
-    pairs = alone / curve_symbols;
+    first.rank = rest.rank = first.rank * std::max<std::size_t>(1, rest.count) + rest.rank;
+    dashed = first.rank / palette.size() % 2 == 1;
   }
-  const auto dashed = [](std::size_t k) { return k % 2 == 1 ? Join::dashes : Join::line; };
-  Look look = {palette[first.rank % palette.size()], curve_symbol(rest.rank), dashed(pairs),
-               dashed(alone)};
+  Look look = {palette[first.rank % palette.size()], curve_symbol(rest.rank),
+               dashed ? Join::dashes : Join::line};
   const auto amplitude_of = [](const json& one) {
     const json value = member_of(one, "amplitude_rad");
     return value.is_number() ? value.get<double>() : std::nan("");
@@ -146,7 +138,7 @@ Look Looks::of(RunGroup curve, const json& key) const {
     look.colour = amplitude_look(amplitude_of(variant), 0).colour;
   }
   if (!stated.colour.empty()) look.colour = stated.colour;
-  if (single) look.join = look.alone = Join::line;
+  if (single) look.join = Join::line;
   if (stated.point >= 0) look.point = stated.point;
   return look;
 }

@@ -37,8 +37,7 @@ inline constexpr std::size_t curve_symbols = 10;
 struct Look {
   std::string colour = {};  ///< "#rrggbb"
   int point = 0;            ///< like Series::point
-  Join join = Join::line;   ///< with symbols: dashes if colour and symbol are used twice
-  Join alone = Join::line;  ///< without symbols: dashes if the colour is used twice
+  Join join = Join::line;   ///< of a curve without symbols: dashes if the colour is used twice
 };
 
 /// A colour or symbol that a manifest states for the curves with the parameters `where`.

@@ -57,48 +57,28 @@ json claim_of(const Verdict& verdict) {
   return claim;
 }
 
-/// "0.0012, 90 % interval -0.0003 to 0.0027".
-std::string estimate_with_interval(const Verdict& verdict) {
-  const auto end = [](double value) {
-    return std::isfinite(value) ? fmt::format("{:.3g}", value) : std::string("unbounded");
-  };
-  const auto [low, high] = verdict.interval;
-  const bool any_end = std::isfinite(low) || std::isfinite(high);
-  return fmt::format("{}, {:.3g} % interval {}",
-                     std::isfinite(*verdict.estimate) ? end(*verdict.estimate) : "no finite value",
-                     100 * verdict.level, any_end ? end(low) + " to " + end(high) : end(low));
-}
-
-/// A factor or its inverse, whichever exceeds 1: "3.3" for log2(3.3) and for log2(1 / 3.3).
+/// The factor of a waiting time: "3.3" for log2(3.3) and for log2(1 / 3.3).
 std::string factor(double log2) {
   const double value = std::exp2(std::abs(log2));
   return fmt::format("{:.{}f}", value, value < 10 ? 1 : 0);
 }
 
-/// "the first is 2.1 times later (90 % interval: 1.3 to 3.4 times later)". If an end of the
-/// interval is infinite, the text gives the bound at the other end, or says that there is no bound.
-std::string order_of_waits(const Verdict& verdict) {
-  const auto times = [](double log2) {
-    return fmt::format("{} times {}", factor(log2), log2 < 0 ? "earlier" : "later");
+/// "0.0012, 90 % interval -0.0003 to 0.0027". For waiting times: "the first is 2.1 times later, 90
+/// % interval 1.3 times later to 3.4 times later".
+std::string estimate_with_interval(const Verdict& verdict) {
+  const bool waits = !verdict.waits_for.empty();
+  const auto text = [&](double value) {
+    if (!std::isfinite(value)) return std::string("unbounded");
+    return waits ? fmt::format("{} times {}", factor(value), value < 0 ? "earlier" : "later")
+                 : fmt::format("{:.3g}", value);
   };
   const auto [low, high] = verdict.interval;
-  const std::string level = fmt::format("{:.3g} %", 100 * verdict.level);
-  if (std::isfinite(low) && std::isfinite(high)) {
-    const bool one_side = (low < 0) == (high < 0);
-    const auto [near, far] =
-        std::minmax(low, high, [](double a, double b) { return std::abs(a) < std::abs(b); });
-    return fmt::format("the first is {} ({} interval: {} to {})", times(*verdict.estimate), level,
-                       one_side ? factor(near) : times(low), times(one_side ? far : high));
-  }
-  const double end = std::isfinite(low) ? low : high;
-  if (!std::isfinite(end)) return fmt::format("no bound on the ratio of waiting times ({})", level);
-  // If the interval contains 0, its finite end bounds only "earlier" or only "later".
-  const bool least = std::isfinite(low) ? low >= 0 : high < 0;
-  return fmt::format("the first is at {} {}{} ({})", least ? "least" : "most", times(end),
-                     least     ? ""
-                     : end < 0 ? ", or later"
-                               : ", or earlier",
-                     level);
+  const bool any_end = std::isfinite(low) || std::isfinite(high);
+  return fmt::format("{}, {:.3g} % interval {}",
+                     !std::isfinite(*verdict.estimate)
+                         ? "no finite value"
+                         : (waits ? "the first is " : "") + text(*verdict.estimate),
+                     100 * verdict.level, any_end ? text(low) + " to " + text(high) : text(low));
 }
 
 }  // namespace
@@ -129,7 +109,7 @@ Verdict decide(const Claim& claim, std::string quantity, const std::optional<Est
   verdict.entered = std::move(entered);
   if (!claim.cannot_be_decided.empty()) {
     verdict.ruling = Ruling::undecidable;
-    verdict.note += (verdict.note.empty() ? "" : "; ") + claim.cannot_be_decided;
+    add_note(verdict.note, claim.cannot_be_decided);
   }
   if (!estimate) return verdict;
   verdict.estimate = estimate->value;
@@ -188,16 +168,11 @@ json to_json(std::span<const Verdict> verdicts) {
 }
 
 std::string numbers_of(const Verdict& verdict) {
-  std::string text = verdict.estimate ? "" : "not measured, ";
-  if (!verdict.waits_for.empty()) {
-    if (verdict.estimate) text += order_of_waits(verdict) + ", ";
-    text +=
-        fmt::format("margin: {}",
-                    factor(verdict.margin) == "2.0" ? "twice" : factor(verdict.margin) + " times");
-  } else {
-    if (verdict.estimate) text += estimate_with_interval(verdict) + ", ";
-    text += fmt::format("margin {:.3g}", verdict.margin);
-  }
+  std::string text =
+      verdict.estimate ? estimate_with_interval(verdict) : std::string("not measured");
+  const std::string times = factor(verdict.margin);
+  text += verdict.waits_for.empty() ? fmt::format(", margin {:.3g}", verdict.margin)
+                                    : ", margin: " + (times == "2.0" ? "twice" : times + " times");
   text += fmt::format(", {}{}",
                       counted(verdict.runs, verdict.counted == Counted::pairs ? "pair" : "run"),
                       verdict.counted == Counted::runs_per_variant ? " per variant" : "");

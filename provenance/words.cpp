@@ -11,6 +11,11 @@ std::string counted(std::size_t number, std::string_view one) {
   return fmt::format("{} {}{}", number, one, number == 1 ? "" : "s");
 }
 
+void add_note(std::string& note, std::string_view part, std::string_view separator) {
+  if (!note.empty()) note += separator;
+  note += part;
+}
+
 std::string format_duration(double seconds) {
   constexpr double year = 365.25 * 86400;
   if (!std::isfinite(seconds)) return "?";

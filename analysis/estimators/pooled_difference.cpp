@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "analysis/estimators.hpp"
-#include "analysis/estimators/notes.hpp"
 #include "provenance/words.hpp"
 
 namespace shearcell {

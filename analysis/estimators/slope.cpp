@@ -2,7 +2,6 @@
 // The slope of one number per run versus another column, by maximum likelihood (censored.hpp).
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <set>
 

@@ -6,7 +6,6 @@
 #include <map>
 
 #include "analysis/estimators.hpp"
-#include "analysis/estimators/notes.hpp"
 #include "provenance/words.hpp"
 
 namespace shearcell {

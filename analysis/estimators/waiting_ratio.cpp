@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "analysis/estimators.hpp"
-#include "analysis/estimators/notes.hpp"
 #include "analysis/onset.hpp"
+#include "provenance/words.hpp"
 
 namespace shearcell {
 namespace {
@@ -23,34 +23,66 @@ std::string event_of(const ClaimSpec& claim) {
   return claim.reaches ? fmt::format("{} >= {}", claim.compare, *claim.reaches) : "the onset";
 }
 
-std::string words_of_waits(const ClaimSpec& claim) {
-  return "the cycle of " + event_of(claim);
-}
-
-Verdict decide_waits(const ClaimSpec& claim, const Claim& stated, RunGroup a, RunGroup b) {
-  const auto waits = [&claim](RunGroup runs) {
-    return claim.reaches ? waits_for(runs, claim.compare, *claim.reaches) : waits_for_onset(runs);
-  };
-  return compare_waits(stated, event_of(claim), waits, a, b);
-}
-
-}  // namespace
-
+/// The first cycle of each run at which the column is at least `level`. A run without such a cycle
+/// is censored at its last cycle.
 std::vector<Waiting> waits_for(RunGroup runs, const std::string& column, double level) {
   const NumberColumn number(column);
   std::vector<Waiting> waits;
   for (const FrameRun* run : runs) {
     if (run->checkpoints.empty()) continue;
-    Waiting wait{run->checkpoints.back().cycle, false};
-    for (const CheckpointMeasures& checkpoint : run->checkpoints) {
-      if (!(number(*run, &checkpoint) >= level)) continue;
-      wait = {checkpoint.cycle, true};
-      break;
-    }
-    waits.push_back(wait);
+    const auto reached = std::ranges::find_if(run->checkpoints, [&](const auto& checkpoint) {
+      return number(*run, &checkpoint) >= level;
+    });
+    const bool observed = reached != run->checkpoints.end();
+    waits.push_back({observed ? reached->cycle : run->checkpoints.back().cycle, observed});
   }
   return waits;
 }
+
+std::vector<Waiting> waits_of(const ClaimSpec& claim, RunGroup runs) {
+  return claim.reaches ? waits_for(runs, claim.compare, *claim.reaches) : waits_for_onset(runs);
+}
+
+/// The claim is decided by log2_wait_ratio().
+Verdict decide_waits(const ClaimSpec& claim, const Claim& stated, RunGroup first, RunGroup second) {
+  const std::string event = event_of(claim);
+  const std::vector<Waiting> a = waits_of(claim, first), b = waits_of(claim, second);
+  const std::optional<Estimate> estimate = log2_wait_ratio(a, b, stated.level);
+  const std::size_t runs = std::min(a.size(), b.size());
+  const std::string names[] = {shared_name(first), shared_name(second)};
+  std::string note = no_group;
+  if (runs > 0) {
+    note = fmt::format("{}: {}; {}: {}", names[0].empty() ? "first" : names[0], wait_in_words(a),
+                       names[1].empty() ? "second" : names[1], wait_in_words(b));
+    if (runs < least_runs) {
+      add_note(note, fmt::format("too few runs: {}; at least {} are needed", runs, least_runs));
+    } else if (!estimate) {
+      add_note(note, fmt::format("no ratio: {} never occurs, or all waits of a group are 0 cycles",
+                                 event));
+    }
+  }
+  Table entered = entered_with({"cycle", "missing"});
+  for (const RunGroup group : {first, second}) {
+    for (const FrameRun* run : group) {
+      RunValue cycle = {0, Missing::checkpoint};
+      for (const Waiting& wait : waits_of(claim, RunGroup(&run, 1))) {
+        cycle = {wait.cycle, wait.observed ? Missing::nothing : Missing::too_short};
+      }
+      enter(*run, {cycle.value, std::string(name_of(cycle.missing))}, entered);
+    }
+  }
+  Verdict verdict =
+      decide(stated, fmt::format("log2 of the ratio of the cycles of {}, log-rank", event),
+             estimate, runs, std::move(note), std::move(entered), Counted::runs_per_variant);
+  verdict.waits_for = event;
+  return verdict;
+}
+
+std::string words_of_waits(const ClaimSpec& claim) {
+  return "the cycle of " + event_of(claim);
+}
+
+}  // namespace
 
 std::vector<Waiting> waits_for_onset(RunGroup runs) {
   std::vector<Waiting> waits;
@@ -61,43 +93,6 @@ std::vector<Waiting> waits_for_onset(RunGroup runs) {
     waits.push_back({observed ? onset.cycle : run->checkpoints.back().cycle, observed});
   }
   return waits;
-}
-
-Verdict compare_waits(const Claim& claim, const std::string& event,
-                      const std::function<std::vector<Waiting>(RunGroup)>& waits, RunGroup first,
-                      RunGroup second) {
-  const std::vector<Waiting> a = waits(first), b = waits(second);
-  const std::optional<Estimate> estimate = log2_wait_ratio(a, b, claim.level);
-  const std::size_t runs = std::min(a.size(), b.size());
-  std::string note;
-  if (runs > 0) {
-    const std::string names[] = {shared_name(first), shared_name(second)};
-    note = fmt::format("{}: {}; {}: {}", names[0].empty() ? "first" : names[0], wait_in_words(a),
-                       names[1].empty() ? "second" : names[1], wait_in_words(b));
-  }
-  if (runs == 0) {
-    note = no_group;
-  } else if (runs < least_runs) {
-    add_note(note, fmt::format("too few runs: {}; at least {} are needed", runs, least_runs));
-  } else if (!estimate) {
-    add_note(note,
-             fmt::format("no ratio: {} never occurs, or all waits of a group are 0 cycles", event));
-  }
-  Table entered = entered_with({"cycle", "missing"});
-  for (const RunGroup group : {first, second}) {
-    for (const FrameRun* run : group) {
-      RunValue cycle = {0, Missing::checkpoint};
-      for (const Waiting& wait : waits(RunGroup(&run, 1))) {
-        cycle = {wait.cycle, wait.observed ? Missing::nothing : Missing::too_short};
-      }
-      enter(*run, {cycle.value, std::string(name_of(cycle.missing))}, entered);
-    }
-  }
-  Verdict verdict =
-      decide(claim, fmt::format("log2 of the ratio of the cycles of {}, log-rank", event), estimate,
-             runs, std::move(note), std::move(entered), Counted::runs_per_variant);
-  verdict.waits_for = event;
-  return verdict;
 }
 
 bool compares_waits(const ClaimSpec& claim) {

@@ -145,10 +145,12 @@ Table critical_table(std::span<const AmplitudeGrowth> all) {
   }
   table.columns.insert(table.columns.end(), {"repeated_low_grains", "repeated_high_grains",
                                              "supplement_grains", "runs"});
+  Series published{.title = "supplement", .colour = "#888888", .point = 6, .join = Join::dashes};
+  Series simulated{.title = "simulated", .colour = "#000000", .point = 5};
   for (const AmplitudeGrowth& one : all) {
+    const auto& [counts, curve, critical] = one.published_bin();
     TableRow& row =
         table.rows.emplace_back(TableRow{one.amplitude, one.published->n_bin, one.onset_cycle()});
-    const auto& [counts, curve, critical] = one.published_bin();
     for (const auto& size : {critical, curve.monotone_critical_size(),
                              critical_size_without(&GrowthCount::absorbed, counts),
                              critical_size_without(&GrowthCount::vanished, counts)}) {
@@ -156,21 +158,14 @@ Table critical_table(std::span<const AmplitudeGrowth> all) {
     }
     const auto [low, high] = curve.repeated_critical_size(published_runs);
     row.insert(row.end(), {low, high, one.published->critical_size, counts.size()});
+    published.points.push_back({one.amplitude, one.published->critical_size});
+    if (!critical) continue;
+    simulated.points.push_back(point_of(one.amplitude, *critical));
+    simulated.points.back().runs = static_cast<double>(counts.size());
   }
   table.chart = {.x = amplitude_axis,
                  .y = {.name = "critical size", .unit = "grains", .low = 0},
-                 .series = {{.title = "supplement",
-                             .colour = "#888888",
-                             .point = 6,
-                             .join = Join::dashes,
-                             .columns = {.x = "amplitude_rad", .y = "supplement_grains"}},
-                            {.title = "simulated",
-                             .colour = "#000000",
-                             .point = 5,
-                             .columns = {.x = "amplitude_rad",
-                                         .y = "critical_size_grains",
-                                         .y_error = "critical_size_standard_error_grains",
-                                         .runs = "runs"}}}};
+                 .series = {std::move(published), std::move(simulated)}};
   return table;
 }
 
@@ -184,6 +179,9 @@ Table followed_table(std::span<const AmplitudeGrowth> all) {
                  .y = {.name = "critical size", .unit = "grains", .log = true},
                  .note = "large open symbols are critical sizes of the supplement"};
   for (const AmplitudeGrowth& one : all) {
+    Series sizes{
+        .title = one.title, .colour = one.look.colour, .point = one.look.point, .join = Join::line};
+    Series published{.colour = one.look.colour, .point = one.look.point - 1, .large = true};
     for (const auto& [cycles, after] : one.after) {
       const bool is_published = cycles == one.published->n_bin;
       if (after.runs.empty() && !is_published) continue;
@@ -191,22 +189,13 @@ Table followed_table(std::span<const AmplitudeGrowth> all) {
       add_size(after.critical, row);
       row.emplace_back(is_published ? TableCell(one.published->critical_size) : TableCell());
       row.emplace_back(after.runs.size());
+      const auto x = static_cast<double>(cycles);
+      if (is_published) published.points.push_back({x, one.published->critical_size});
+      if (!after.critical) continue;
+      sizes.points.push_back(point_of(x, *after.critical));
+      sizes.points.back().runs = static_cast<double>(after.runs.size());
     }
-    const RowFilter rows = {"amplitude_rad", one.amplitude};
-    table.chart.series.push_back({.title = one.title,
-                                  .colour = one.look.colour,
-                                  .point = one.look.point,
-                                  .join = Join::line,
-                                  .columns = {.x = "cycles_followed",
-                                              .y = "critical_size_grains",
-                                              .y_error = "critical_size_standard_error_grains",
-                                              .runs = "runs"},
-                                  .filter = rows});
-    table.chart.series.push_back({.colour = one.look.colour,
-                                  .point = one.look.point - 1,
-                                  .large = true,
-                                  .columns = {.x = "cycles_followed", .y = "supplement_grains"},
-                                  .filter = rows});
+    table.chart.series.insert(table.chart.series.end(), {std::move(sizes), std::move(published)});
   }
   return table;
 }

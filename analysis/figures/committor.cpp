@@ -235,9 +235,16 @@ Table sizes_table(std::span<const Amplitude> all) {
       .x = {.name = "cycles without a descendant", .whole = true, .low = 0.5, .high = 3.5},
       .y = {.name = "crystallite size at which half grow", .unit = "grains", .low = 0, .high = 25}};
   for (const Amplitude& one : all) {
+    Series sizes{.title = one.title,
+                 .colour = one.look.colour,
+                 .point = one.look.point,
+                 .join = Join::line,
+                 .shift = 0.04 * static_cast<double>(table.chart.series.size())};
     for (std::size_t rule = 0; rule < cycles_without.size(); ++rule) {
       TableRow& row = table.rows.emplace_back(TableRow{one.amplitude, cycles_without[rule]});
-      add_size(half_size(one, rule), row);
+      const std::optional<Estimate> half = half_size(one, rule);
+      add_size(half, row);
+      if (half) sizes.points.push_back(point_of(static_cast<double>(cycles_without[rule]), *half));
       for (const Fate undecided : {Fate::undecided, Fate::grown, Fate::gone}) {
         const auto size = GrowthCurve(by_packing_and_size(one, rule, undecided)).critical_size();
         row.push_back(size ? TableCell(size->value) : TableCell());
@@ -247,15 +254,7 @@ Table sizes_table(std::span<const Amplitude> all) {
       add_fates(sum_of(one.crystallites, rule), row);
       row.insert(row.end(), {one.controls.size(), background(one), one.published->critical_size});
     }
-    table.chart.series.push_back({.title = one.title,
-                                  .colour = one.look.colour,
-                                  .point = one.look.point,
-                                  .join = Join::line,
-                                  .columns = {.x = "cycles_without",
-                                              .y = "half_size_grains",
-                                              .y_error = "half_size_standard_error_grains"},
-                                  .filter = {"amplitude_rad", one.amplitude},
-                                  .shift = 0.04 * static_cast<double>(table.chart.series.size())});
+    table.chart.series.push_back(std::move(sizes));
     table.chart.lines.push_back(critical_line(one.published->critical_size, one.look.colour));
   }
   return table;

@@ -35,40 +35,45 @@ std::string name_of(const Group& group) {
   return fmt::format("A={} N={}", group.first, group.second);
 }
 
-/// One curve for each group, whose name is in the table's column "group". If there are several
-/// amplitudes, each has the same colour as in all figures. Otherwise each cell size has a colour.
-/// Within a bin of phi, the points of the groups are shifted so that they do not overlap.
-std::vector<Series> series_by(const Groups& groups, const SeriesColumns& columns, Join join) {
-  std::vector<Series> series;
+/// A curve without points for each group. If there are several amplitudes, each has the same colour
+/// as in all figures. Otherwise each cell size has a colour. With Join::none, the points of the
+/// groups in a bin of phi are shifted so that they do not overlap.
+std::map<Group, Series> series_by(const Groups& groups, Join join) {
+  std::map<Group, Series> series;
   std::set<double> amplitudes;
   for (const auto& [group, runs] : groups) amplitudes.insert(group.first);
   const auto count = static_cast<double>(groups.size());
   for (const auto& [group, runs] : groups) {
     const std::size_t k = series.size();
-    series.push_back(
-        {.title = formula(fmt::format("$A$ = {}, $N$ = {}", group.first, group.second)),
-         .colour = amplitudes.size() > 1 ? amplitude_look(group.first, k).colour
-                                         : safe_colours[k % safe_colours.size()],
-         .point = join == Join::none ? curve_symbol(k) : 0,
-         .join = join,
-         .columns = columns,
-         .filter = {"group", name_of(group)},
-         .shift = columns.x_high.empty()
-                      ? 0
-                      : phi_bin * ((static_cast<double>(k) + 0.5) / count - 0.5) * 0.8});
+    const bool points = join == Join::none;
+    series[group] = {
+        .title = formula(fmt::format("$A$ = {}, $N$ = {}", group.first, group.second)),
+        .colour = amplitudes.size() > 1 ? amplitude_look(group.first, k).colour
+                                        : safe_colours[k % safe_colours.size()],
+        .point = points ? curve_symbol(k) : 0,
+        .join = join,
+        .shift = points ? phi_bin * ((static_cast<double>(k) + 0.5) / count - 0.5) * 0.8 : 0};
   }
   return series;
+}
+
+std::vector<Series> list_of(std::map<Group, Series> series) {
+  std::vector<Series> all;
+  for (auto& [group, one] : series) all.push_back(std::move(one));
+  return all;
 }
 
 Table survival_table(const Groups& groups) {
   Table table{
       .name = "nucleation_a",
       .columns = {"group", "amplitude_rad", "grains", "cycle", "share_without_onset", "runs"}};
+  std::map<Group, Series> series = series_by(groups, Join::line);
   for (const auto& [group, runs] : groups) {
     const std::vector<Waiting> waits = waits_for_onset(runs);
     double before = 1;
     const auto add = [&, &group = group](double cycle, double share) {
       table.rows.push_back({name_of(group), group.first, group.second, cycle, share, waits.size()});
+      series[group].points.push_back({cycle, share});
     };
     add(0, before);
     for (const SurvivalStep& step : kaplan_meier(waits)) {
@@ -79,15 +84,14 @@ Table survival_table(const Groups& groups) {
     const auto longest = std::ranges::max_element(waits, {}, &Waiting::cycle);
     if (longest != waits.end()) add(longest->cycle, before);
   }
-  table.chart = {
-      .x = cycle_axis,
-      .y = {.name = "share of runs without an onset", .low = 0, .high = 1},
-      .series = series_by(groups, {.x = "cycle", .y = "share_without_onset"}, Join::line)};
+  table.chart = {.x = cycle_axis,
+                 .y = {.name = "share of runs without an onset", .low = 0, .high = 1},
+                 .series = list_of(std::move(series))};
   return table;
 }
 
 /// Poisson error of the rate. Empty for one event: the error bar would reach zero on a log axis.
-TableCell error_of(const NucleationRate& bin) {
+std::optional<double> error_of(const NucleationRate& bin) {
   if (bin.events < 2) return {};
   return bin.rate / std::sqrt(static_cast<double>(bin.events));
 }
@@ -97,22 +101,21 @@ Table rate_table(const Groups& groups, Region region, const std::string& name) {
               .columns = {"group", "amplitude_rad", "grains", "phi_low", "phi_high", "onsets",
                           "grain_cycles", "rate_per_grain_cycle", "rate_standard_error", "rate_low",
                           "rate_high"}};
+  std::map<Group, Series> series = series_by(groups, Join::none);
   for (const auto& [group, runs] : groups) {
     for (const NucleationRate& bin : nucleation_rates(runs, region)) {
       table.rows.push_back({name_of(group), group.first, group.second, bin.phi_low, bin.phi_high,
                             bin.events, bin.grain_cycles,
                             bin.events > 0 ? TableCell(bin.rate) : TableCell(), error_of(bin),
                             bin.interval.low, bin.interval.high});
+      if (bin.events == 0) continue;
+      series[group].points.push_back(
+          {.x = (bin.phi_low + bin.phi_high) / 2, .y = bin.rate, .y_error = error_of(bin)});
     }
   }
   table.chart = {.x = phi_axis,
                  .y = {.name = "onsets per grain and cycle", .log = true},
-                 .series = series_by(groups,
-                                     {.x = "phi_low",
-                                      .y = "rate_per_grain_cycle",
-                                      .y_error = "rate_standard_error",
-                                      .x_high = "phi_high"},
-                                     Join::none),
+                 .series = list_of(std::move(series)),
                  .note = fmt::format("points in a bin of phi ({} wide) are shifted apart", phi_bin),
                  .errors = "bars are standard errors of Poisson counts; a single onset has no bar"};
   return table;

@@ -75,21 +75,31 @@ Table density_table(std::string name, std::string first_column, Text x,
                  .y = {.name = "probability density", .symbol = formula("$P$"), .low = 0},
                  .errors = "bars are standard errors over packings"};
   for (const Profile& profile : profiles) {
+    const std::size_t k = table.chart.series.size();
+    Series& series =
+        table.chart.series.emplace_back(Series{.title = profile.title,
+                                               .colour = colours[k % colours.size()],
+                                               .point = 4 + 2 * static_cast<int>(k % 4)});
     for (const DensityBin& bin : density(profile.places.packings, density_bins)) {
       table.rows.push_back({profile.key, bin.low, bin.high, bin.density, bin.error,
                             profile.places.count, profile.places.runs});
+      series.points.push_back(
+          {.x = (bin.low + bin.high) / 2, .y = bin.density, .y_error = bin.error});
     }
-    const std::size_t k = table.chart.series.size();
-    table.chart.series.push_back({.title = profile.title,
-                                  .colour = colours[k % colours.size()],
-                                  .point = 4 + 2 * static_cast<int>(k % 4),
-                                  .columns = {.x = "low",
-                                              .y = "probability_density",
-                                              .y_error = "standard_error",
-                                              .x_high = "high"},
-                                  .filter = {table.columns.front().name, profile.key}});
   }
   return table;
+}
+
+/// Mean over all items of the packings. The bootstrap draws packings, each with all its items.
+std::optional<Estimate> mean_of_items(std::span<const std::vector<double>> packings) {
+  return bootstrapped(packings.size(), [&](std::span<const std::size_t> selection) {
+    double sum = 0, all = 0;
+    for (const std::size_t packing : selection) {
+      for (const double item : packings[packing]) sum += item;
+      all += static_cast<double>(packings[packing].size());
+    }
+    return sum / all;
+  });
 }
 
 /// Verdict on the share of nuclei in one part of the cell minus the share in another part. `side`
@@ -123,7 +133,7 @@ Verdict share_verdict(const Claim& claim, std::string quantity, RunGroup runs, C
     note += fmt::format("; too few; at least {} are needed", least_bootstrap_runs);
   }
   const auto sides = std::views::values(packings);
-  return decide(claim, std::move(quantity), share(std::vector(sides.begin(), sides.end())),
+  return decide(claim, std::move(quantity), mean_of_items(std::vector(sides.begin(), sides.end())),
                 packings.size(), std::move(note), std::move(entered));
 }
 

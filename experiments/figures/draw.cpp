@@ -87,16 +87,15 @@ void lay_out(std::vector<Table>& tables, bool wide) {
   }
 }
 
-/// Whether the chart has no point to draw. Checks only the series that are traces (`thin`) or have
-/// columns in the table. If there are no such series, checks all series.
+/// Whether the chart has no point to draw. Checks only the series of runs and of variants. If there
+/// are no such series, checks all series.
 bool has_no_value(const Table& table) {
   if (table.chart.series.empty()) return table.rows.empty();
   const auto is_drawn = [&](const ChartPoint& point) { return is_on_log_axes(table.chart, point); };
-  const auto has_columns = [](const Series& one) { return one.thin || !one.columns.x.empty(); };
-  const bool all_stated = std::ranges::none_of(table.chart.series, has_columns);
+  const auto is_own = [](const Series& one) { return one.thin || !one.variant.empty(); };
+  const bool none_own = std::ranges::none_of(table.chart.series, is_own);
   return std::ranges::all_of(table.chart.series, [&](const Series& series) {
-    return !(all_stated || has_columns(series)) ||
-           std::ranges::none_of(points_of(table, series), is_drawn);
+    return !(none_own || is_own(series)) || std::ranges::none_of(points_of(series), is_drawn);
   });
 }
 

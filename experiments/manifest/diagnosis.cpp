@@ -482,7 +482,7 @@ string unused_cycle(const PlotSpec& plot) {
 std::vector<string> problems_of(const PlotSpec& plot, const ScaleRuns& here,
                                 std::span<const ScaleRuns> all) {
   const PlotRuns selection = selected_by(plot, here.runs);
-  const std::vector<const FrameRun*> runs = selection.runs();
+  const std::vector<const FrameRun*> runs = runs_of(selection.drawn);
   std::vector<string> found = {problem_of_minus(plot, count_variants(selection.subtracted)),
                                lack_of_partner(plot, selection)};
   if (runs.empty()) {
@@ -503,7 +503,7 @@ std::vector<string> problems_of(const PlotSpec& plot, const ScaleRuns& here,
     if (plot.listed || !one.column.empty()) continue;
     const std::size_t curves = curves_of(one, plot, runs);
     const auto is_drawn = [&](const ScaleRuns& other) {
-      return curves_of(one, plot, selected_by(plot, other.runs).runs()) > 0;
+      return curves_of(one, plot, runs_of(selected_by(plot, other.runs).drawn)) > 0;
     };
     if (curves == 1 || (curves == 0 && std::ranges::any_of(all, is_drawn))) continue;
     found.push_back(

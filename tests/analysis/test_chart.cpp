@@ -25,30 +25,9 @@ Table table_with(std::vector<TableRow> rows, Chart chart) {
           .chart = std::move(chart)};
 }
 
-const SeriesColumns phi_columns{.x = "cycle", .y = "phi", .y_error = "error"};
-
-TEST(Chart, TakesItsPointsFromTheRowsOfOneCurve) {
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  const Table table = table_with({{std::string("a"), std::int64_t{1}, 0.5, 0.1},
-                                  {std::string("b"), std::int64_t{1}, 0.6, {}},
-                                  {std::string("a"), std::int64_t{2}, {}, 0.1},
-                                  {std::string("a"), std::int64_t{3}, nan, 0.1},
-                                  {std::string("a"), std::int64_t{4}, 0.7, nan}},
-                                 {});
-  const Series of_a{.columns = phi_columns, .filter = {"variant", std::string("a")}};
-  const auto points = points_of(table, of_a);
-  ASSERT_EQ(points.size(), 2U) << "without a y there is no point";
-  EXPECT_EQ(points[0].x, 1);
-  EXPECT_EQ(points[0].y, 0.5);
-  EXPECT_EQ(points[0].y_error, 0.1);
-  EXPECT_EQ(points[0].x_error, std::nullopt);
-  EXPECT_EQ(points[1].y_error, std::nullopt);
-  EXPECT_EQ(points_of(table, {.columns = phi_columns}).size(), 3U);
-  const Series between{.columns = {.x = "cycle", .y = "phi", .x_high = "phi"}};
-  EXPECT_EQ(points_of(table, between).at(0).x, 0.75) << "the middle of both columns";
-  EXPECT_THROW(points_of(table, {.columns = {.x = "cycle", .y = "psi"}}), AnalysisError);
+TEST(Chart, LeavesOutPointsWithoutANumber) {
   const double none = std::nan("");
-  EXPECT_EQ(points_of(table, {.points = {{1, none}, {none, 2}, {3, 4}}}).size(), 1U);
+  EXPECT_EQ(points_of({.points = {{1, none}, {none, 2}, {3, 4}}}).size(), 1U);
 }
 
 TEST(Chart, HasFifteenDigits) {
@@ -84,11 +63,13 @@ TEST(Chart, PrintsDigitsThatShowTheSpread) {
       return offset + scale * std::sin(k);
     };
     std::vector<TableRow> table;
+    Series series;
     for (int k = 0; k < rows; ++k) {
+      series.points.push_back({static_cast<double>(k), value(k)});
       table.push_back({std::string("a"), std::int64_t{k}, value(k),
                        0.1 + (k % 2) * std::numeric_limits<double>::epsilon() / 8});
     }
-    const Table figure = table_with(table, {.series = {{.columns = {.x = "cycle", .y = "phi"}}}});
+    const Table figure = table_with(table, {.series = {series}});
     const nlohmann::json points = chart_json(figure)["series"][0]["points"];
     const std::string script = gnuplot_script(figure);
     std::istringstream csv(to_csv(figure)), data(script.substr(script.find("EOD\n") + 4));
@@ -118,8 +99,8 @@ TEST(GnuplotScript, StatesEverySeriesLineAndLabel) {
        .series = {{.title = formula("$ϕ_u$"),
                    .colour = "#123456",
                    .join = Join::line,
-                   .columns = phi_columns,
-                   .filter = {"variant", std::string("it's")}},
+                   .variant = "it's",
+                   .points = {{1, 0.5, {}, 0.1}}},
                   {.title = "experiment", .colour = "#654321", .points = {{1, 0.25}}, .shift = 0.5},
                   {.title = "nothing", .colour = "#000000", .point = 4}},
        .lines = {{0.1}, {2, true, true}}});
@@ -264,7 +245,7 @@ TEST(Chart, EveryPanelOfEveryFigureHasOne) {
         EXPECT_FALSE(axis->name.empty() && axis->symbol.empty()) << table.name;
       }
       std::size_t points = 0;
-      for (const Series& one : table.chart.series) points += points_of(table, one).size();
+      for (const Series& one : table.chart.series) points += points_of(one).size();
       EXPECT_TRUE(!table.name.starts_with("S2") || points == table.rows.size()) << table.name;
     }
   }

@@ -16,13 +16,18 @@
 namespace shearcell::test {
 namespace {
 
+Scalar mean_at(const char* column, std::uint64_t first, std::uint64_t last) {
+  return mean_over_cycles.scalar({.id = "own", .compare = column, .cycles = {{first, last}}});
+}
+
 // phi before most runs crystallize, and the percentage where they do.
 Scalar early_phi() {
-  return over_cycles("phi", "phi", 1, 15);
+  return mean_at("phi", 1, 15);
 }
 
 Scalar percentage_over_phi() {
-  return over_phi("percentage crystalline", "crystalline_percent", 0.646, 0.67);
+  return mean_over_phi.scalar(
+      {.id = "own", .compare = "crystalline_percent", .phi = {{0.646, 0.67}}});
 }
 
 /// phi = start + 0.001 n + gain from cycle 1 on; the percentage rises by 1 per 0.001 of phi above
@@ -57,9 +62,9 @@ const Claim equal = {"equal", 0.001};
 
 TEST(Scalars, AtOneCycleOrOverSeveral) {
   const FrameRun run = rising(1, 0.62);
-  EXPECT_NEAR(over_cycles("phi", "phi", 10, 10).of(run).value, 0.63, 1e-12);
+  EXPECT_NEAR(mean_at("phi", 10, 10).of(run).value, 0.63, 1e-12);
   EXPECT_NEAR(early_phi().of(run).value, 0.628, 1e-12);
-  EXPECT_EQ(over_cycles("phi", "phi", 10, 10).name, "phi at cycle 10");
+  EXPECT_EQ(mean_at("phi", 10, 10).name, "phi at cycle 10");
 }
 
 TEST(Scalars, ReportWhyARunHasNone) {
@@ -112,7 +117,7 @@ TEST(Compare, OthersAreIndependent) {
 }
 
 TEST(Compare, RelativeDifferences) {
-  Scalar overlap = over_cycles("overlap", "mean_overlap_d", 1, 1);
+  Scalar overlap = mean_at("mean_overlap_d", 1, 1);
   overlap.relative = true;
   const Claim claim = {"overlap", 0.03};
   const Verdict verdict =
@@ -124,7 +129,7 @@ TEST(Compare, RelativeDifferences) {
 }
 
 TEST(Compare, ARelativeDifferenceNeedsPositiveNumbers) {
-  Scalar overlap = over_cycles("overlap", "mean_overlap_d", 1, 1);
+  Scalar overlap = mean_at("mean_overlap_d", 1, 1);
   overlap.relative = true;
   Runs a = group(4, 0, 0.02, 11);
   for (CheckpointMeasures& checkpoint : a[0].checkpoints)
@@ -201,7 +206,7 @@ TEST(Compare, EqualSidesAreNoEvidence) {
   for (FrameRun& run : constant) {
     for (CheckpointMeasures& checkpoint : run.checkpoints) checkpoint.measures.numbers["phi"] = 0.5;
   }
-  const Verdict one = compare_with(equal, over_cycles("phi", "phi", 1, 1), pointers(constant), 0.5);
+  const Verdict one = compare_with(equal, mean_at("phi", 1, 1), pointers(constant), 0.5);
   EXPECT_EQ(one.note, "the numbers have no scatter, so the interval has no width");
   EXPECT_EQ(one.ruling, Ruling::agrees);
 }
@@ -325,7 +330,7 @@ TEST(CompareWaits, CountsRunsThatEndBefore) {
   a[0].checkpoints.resize(12);
   for (FrameRun& run : a) run.name = "still fluid";
   const Verdict verdict =
-      compare_waits({"onset", 1}, "the onset", waits_for_onset, pointers(a), pointers(b));
+      waiting_ratio.decide({.id = "own"}, {"onset", 1}, pointers(a), pointers(b));
   const Table entered = entered_table(std::span(&verdict, 1));
   EXPECT_EQ(entered.rows.size(), 8U);
   EXPECT_EQ(std::get<std::string>(entered.rows[0].back()), "ends before");
@@ -334,10 +339,11 @@ TEST(CompareWaits, CountsRunsThatEndBefore) {
       verdict.note,
       "still fluid: median cycle 16 (1 of 4 runs end before the event); second: median cycle 16 "
       "(0 of 4 runs end before the event)");
-  const std::vector<Waiting> waits = waits_for(pointers(a), "crystalline_percent", 5);
-  EXPECT_FALSE(waits[0].observed);
-  EXPECT_EQ(waits[0].cycle, 11);
-  EXPECT_EQ(waits[1].cycle, 29) << "phi = 0.622 + 0.029";
+  const ClaimSpec rises{.id = "own", .compare = "crystalline_percent", .reaches = 5};
+  const Table cycles = first_cycle_reached.decide(rises, {"rise", 1}, pointers(a), {}).entered;
+  EXPECT_EQ(cycles.rows[0].at(3), TableCell(11.0));
+  EXPECT_EQ(cycles.rows[0].at(4), TableCell("ends before"));
+  EXPECT_EQ(cycles.rows[1].at(3), TableCell(29.0)) << "phi = 0.622 + 0.029";
 }
 
 /// Runs of these seeds, whose phi is `phi` and differs a little.

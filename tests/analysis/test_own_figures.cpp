@@ -158,7 +158,7 @@ TEST(OwnPlot, TakesExpressionsOfParametersAndMeasures) {
       drawing_of({.name = "own", .y = "1000*(phi - amplitude_rad)/period_s", .x = "cycle"});
   EXPECT_EQ(both.chart.series.size(), 6U);
   for (const Series& series : both.chart.series) {
-    for (const ChartPoint& p : points_of(both, series)) EXPECT_NEAR(p.y, 1, 0.005);
+    for (const ChartPoint& p : points_of(series)) EXPECT_NEAR(p.y, 1, 0.005);
   }
   const Table strange = drawing_of(
       {.name = "own", .y = "1/(mean_overlap_d - 2)", .x = "2*cycle", .show = Show::scatter});
@@ -524,7 +524,7 @@ TEST(OwnPlot, IsADifferenceFromTheRunWithTheSamePacking) {
   EXPECT_EQ(costs.columns[2], "core_time_difference_rms_s");
   bool found = false;  // 90, 180 and 270 s less
   for (const Series& series : costs.chart.series) {
-    for (const ChartPoint& p : points_of(costs, series)) {
+    for (const ChartPoint& p : points_of(series)) {
       found = found || (p.x == 10 && std::abs(p.y - 90 * std::sqrt(14.0 / 3)) < 1e-9);
     }
   }

@@ -119,17 +119,21 @@ TEST(Verdict, WaitsAreComparedInWords) {
     const std::string numbers = numbers_of(verdict);
     return numbers.substr(0, numbers.find(", margin"));
   };
-  EXPECT_EQ(words(infinity, 1.74, infinity), "the first is at least 3.3 times later (90 %)");
-  EXPECT_EQ(words(-infinity, -infinity, -4), "the first is at least 16 times earlier (90 %)");
-  EXPECT_EQ(words(3, -1, infinity), "the first is at most 2.0 times earlier, or later (90 %)");
-  EXPECT_EQ(words(-3, -infinity, 1), "the first is at most 2.0 times later, or earlier (90 %)");
-  EXPECT_EQ(words(1, -infinity, infinity), "no bound on the ratio of waiting times (90 %)");
+  EXPECT_EQ(words(infinity, 1.74, infinity),
+            "no finite value, 90 % interval 3.3 times later to unbounded");
+  EXPECT_EQ(words(-infinity, -infinity, -4),
+            "no finite value, 90 % interval unbounded to 16 times earlier");
+  EXPECT_EQ(words(3, -1, infinity),
+            "the first is 8.0 times later, 90 % interval 2.0 times earlier to unbounded");
+  EXPECT_EQ(words(-3, -infinity, 1),
+            "the first is 8.0 times earlier, 90 % interval unbounded to 2.0 times later");
+  EXPECT_EQ(words(1, -infinity, infinity), "the first is 2.0 times later, 90 % interval unbounded");
   EXPECT_EQ(words(1, 0.5, 3),
-            "the first is 2.0 times later (90 % interval: 1.4 to 8.0 times later)");
+            "the first is 2.0 times later, 90 % interval 1.4 times later to 8.0 times later");
   EXPECT_EQ(words(-1, -3, -0.5),
-            "the first is 2.0 times earlier (90 % interval: 1.4 to 8.0 times earlier)");
+            "the first is 2.0 times earlier, 90 % interval 8.0 times earlier to 1.4 times earlier");
   EXPECT_EQ(words(0.1, -1, 1.5),
-            "the first is 1.1 times later (90 % interval: 2.0 times earlier to 2.8 times later)");
+            "the first is 1.1 times later, 90 % interval 2.0 times earlier to 2.8 times later");
   verdict.margin = 1.585;
   verdict.note = "a note";
   EXPECT_TRUE(has(result_of(verdict), "margin: 3.0 times, 6 runs per variant; a note"));

@@ -71,15 +71,13 @@ def main():
 
     for name, every, style, colour in re.findall(
             r"(\$series\d+) every (\d+) using \S+ with (\w+).*?lc rgb '(\S+)'", script):
-        for x, y, x_error, y_error in points[name][::int(every)]:
+        for x, y, _, y_error in points[name][::int(every)]:
             if "points" in style:
                 look("point", (x, y), all, [(0, -EDGE), (0, 0), (0, EDGE)], colour)
                 continue
             for end in (-1, 1):
                 if y_error:
                     look("bar", (x, y + end * y_error), any, [(-CAP, 0), (CAP, 0)], colour)
-                if x_error:
-                    look("bar", (x + end * x_error, y), any, [(0, -CAP), (0, CAP)], colour)
     print(f"{shown} shown, {len(missing)} missing")
     print("\n".join(missing))
     sys.exit(1 if missing or not shown else 0)

@@ -462,11 +462,11 @@ TEST_F(DrawFigure, NamesTablesWithoutValues) {
   WantedFigure made_up = kS2;
   made_up.figure.make = [](const Frame&) {
     Table none{.name = "none", .columns = {"x", "y"}};
-    none.chart.series = {{.columns = {.x = "x", .y = "y"}}, {.points = {{.x = 1, .y = 1}}}};
+    none.chart.series = {{.variant = "a"}, {.points = {{.x = 1, .y = 1}}}};
     Table unknown = none, known = none;
     unknown.name = "unknown", known.name = "known";
-    unknown.rows = {{1.0, std::nan("")}};
-    known.rows = {{1.0, 2.0}};
+    unknown.chart.series[0].points = {{1.0, std::nan("")}};
+    known.chart.series[0].points = {{1.0, 2.0}};
     return FigureResult{{none, unknown, known}, {}};
   };
   const ComputedFigure figure = compute_figure(store_, made_up, {});
