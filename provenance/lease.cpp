@@ -70,9 +70,7 @@ std::optional<std::uint64_t> start_of(std::uint64_t pid) {
   std::string line;
   if (!std::getline(file, line)) return std::nullopt;
   // The second field is the program's name in parentheses and may contain any character.
-  const auto end_of_name = line.rfind(')');
-  if (end_of_name == std::string::npos) return std::nullopt;
-  std::istringstream rest(line.substr(end_of_name + 1));
+  std::istringstream rest(line.substr(line.rfind(')') + 1));
   const std::vector<std::string> fields(std::istream_iterator<std::string>(rest), {});
   constexpr std::size_t kState = 0, kStart = 19;  // indices of fields 3 and 22 of the line
   if (fields.size() <= kStart) return std::nullopt;

@@ -41,8 +41,8 @@ void derive_projections(sqlite::Database& database, const EventLog& log,
 void shadow_projections(sqlite::Database& database, const EventLog& log);
 
 /// One text for each column: "NAME = VALUE", with all digits of numbers.
-using TableRow = std::vector<std::string>;
-using TableRows = std::vector<TableRow>;  ///< the rows of a table in ascending order
+using RowCells = std::vector<std::string>;
+using TableRows = std::vector<RowCells>;  ///< the rows of a table in ascending order
 
 /// All rows of all tables, so that the tables of two databases can be compared.
 std::map<std::string, TableRows> projection_rows(const sqlite::Database& database);

@@ -99,7 +99,7 @@ sqlite::Database derive(const EventLog& log, const std::string& name, VerifyRepo
 
 /// Describes the first difference between two tables. `expected` and `found` are the rows at which
 /// the tables differ; a row is null if its table has ended.
-std::string row_difference(const TableRow* expected, const TableRow* found) {
+std::string row_difference(const RowCells* expected, const RowCells* found) {
   const bool surplus = expected == nullptr || (found != nullptr && *found < *expected);
   const std::string row = fmt::format("row ({})", (surplus ? found : expected)->front());
   if (expected == nullptr || found == nullptr || expected->front() != found->front()) {
