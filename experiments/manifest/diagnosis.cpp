@@ -498,6 +498,10 @@ std::vector<string> problems_of(const PlotSpec& plot, const ScaleRuns& here,
                "each variant.",
                key));
   }
+  if (plot.x == "shear_strain" && (!plot.cycles || here.scale.checkpoints.phases.empty())) {
+    found.push_back(
+        "shear_strain is 0 at whole cycles. Set `cycles`, and `phases` of `checkpoints`.");
+  }
   for (const SeriesSpec& one : plot.series) {
     // A listed plot is checked only in the manifest that defines it.
     if (plot.listed || !one.column.empty()) continue;

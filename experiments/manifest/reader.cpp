@@ -573,7 +573,9 @@ struct Reader {
   // Reads a number or a choice. Returns nothing if the type or range is wrong.
   std::optional<json> read_scalar(const Node& in, const Field& about) {
     if (!in.is_scalar()) {
-      reject_type(in, "a single value", remedy_of(about) + " `sweep` varies parameters.");
+      reject_type(in, "a single value",
+                  remedy_of(about) +
+                      (in.kind == Node::Kind::list ? " To vary a parameter, use `sweep`." : ""));
       return std::nullopt;
     }
     auto read = read_value(about, in.text, in.quoted);

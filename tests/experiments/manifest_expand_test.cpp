@@ -141,14 +141,20 @@ TEST(Manifest, AQuestionMayHaveSeveralLines) {
             "Does the fluid matter?");
 }
 
+TEST(Parse, ReadsAWholeNumberInAnyNotation) {
+  for (const char* grains : {"600", "6e2", "600.0", "+600"}) {
+    EXPECT_EQ(plan_of(std::string("grains: ") + grains).runs.front().stage.id,
+              plan_of("grains: 600").runs.front().stage.id);
+  }
+}
+
 TEST(Expand, WarnsOfGrainsWithAnotherUnit) {
   const auto warning = [](const std::string& base) {
     const Strings warnings = plan_of(base).warnings;
     return warnings.empty() ? "" : warnings.front();
   };
   EXPECT_TRUE(has(warning("diameter_m: 3"),
-                  "grains of 3 m and 2e-05 kg have a density of 1.4e-06 kg/m^3. If the diameter is "
-                  "in mm, write `diameter_m: 0.003`."));
+                  "grains of 3 m and 2e-05 kg have a density of 1.4e-06 kg/m^3. Check the units"));
   EXPECT_TRUE(has(warning("mass_kg: 20"), "Check the units of diameter_m [m] and mass_kg [kg]."));
   EXPECT_FALSE(has(warning("diameter_m: 1, mass_kg: 1"), "density")) << "reduced units";
 }
@@ -217,9 +223,8 @@ TEST(Expand, AZipHasANumberOfSeedsForEachVariant) {
   EXPECT_EQ(expand(manifest, {.seeds = 2}).runs.size(), 4U) << "of each variant";
   EXPECT_EQ(expand(manifest, {.only_seeds = {8}}).runs.size(), 1U);
   EXPECT_EQ(message_of<ManifestError>([&] { parse(text + "scales: {desk: {seeds: 2}}\n"); }),
-            "test.yaml:3:54: scales.desk.sweep.zip.seeds: is more than the number of seeds of the "
-            "scale (got 3). "
-            "Write `seeds: 3`, or list this many seeds.");
+            "test.yaml:3:54: seeds: are fewer than `looks` or the sweep needs (got 3). Write "
+            "`seeds: 3`, or list this many seeds.");
 }
 
 TEST(Expand, TakesOnlyTheRequestedVariants) {
@@ -244,12 +249,13 @@ TEST(Expand, TakesOnlyTheRequestedVariants) {
 TEST(Expand, RejectsOptionsThatDoNotFit) {
   const Manifest manifest =
       parse("experiment: a\nbase: {}\nseeds: [4]\nscales: {smoke: {cycles: 1}, paper: {}}\n");
-  EXPECT_EQ(message(manifest, {}),
-            "test.yaml: scale: there is no scale desk, which is the default. Name a scale with "
-            "--scale. The manifest has smoke, paper.");
+  EXPECT_EQ(
+      message(manifest, {}),
+      "test.yaml: scale: is unknown (got desk). The manifest has smoke, paper; --scale selects "
+      "one of them.");
   EXPECT_EQ(message(manifest, {.scale = "smok"}),
             "test.yaml: scale: is unknown, the nearest is smoke (got smok). The manifest has "
-            "smoke, paper.");
+            "smoke, paper; --scale selects one of them.");
   EXPECT_EQ(message(manifest, {.scale = "smoke", .seeds = 2}),
             "test.yaml: seeds: the manifest lists only 1 seed (got 2). List more seeds, or give a "
             "number of seeds.");
@@ -274,7 +280,9 @@ TEST(Expand, WarnsOfACellThatThePressureCannotLift) {
 TEST(Expand, WarnsOfADragTooSmallToSettle) {
   const auto warnings = [](const std::string& base) { return plan_of(base).warnings; };
   for (const auto& [base, says] :
-       {std::pair{"drag_kg_per_s: 0", "without drag the grains do not come to rest"},
+       {std::pair{"drag_kg_per_s: 0",
+                  "with drag_kg_per_s 0 and wall_drag_grains_per_d2_s 1000 the grains come to rest "
+                  "too late"},
         {"drag_kg_per_s: 2e-6", "come to rest only after about 1.8e+02 s"}}) {
     ASSERT_EQ(warnings(base).size(), 1U) << base;
     EXPECT_TRUE(has(warnings(base)[0], says) &&
@@ -326,21 +334,21 @@ TEST(Expand, WarnsOfPlotsAndClaimsThatCannotBeMade) {
   const std::string sides = "{fluid: still, walls: rough}, {fluid: cell, walls: rough}";
   EXPECT_TRUE(claim(sides, 3).empty());
   ASSERT_EQ(claim(sides, 4).size(), 1U);
-  EXPECT_TRUE(
-      has(claim(sides, 4)[0], "claim same: it needs cycle 4, but the last cycle of the runs is 3"));
+  EXPECT_TRUE(has(claim(sides, 4)[0],
+                  "claim same: runs lack a checkpoint at cycle 4, so phi has no value"));
   ASSERT_EQ(claim("{fluid: still}, {fluid: cell, walls: rough}", 3).size(), 1U);
   EXPECT_TRUE(has(claim("{fluid: still}, {fluid: cell, walls: rough}", 3)[0],
                   "2 variants have fluid=still"));
   for (const auto& [plot, problem] :
        {std::pair("y: phi, by: fluid", "average over the values of walls"),
-        std::pair("y: phi, x: drag_kg_per_s, at_cycle: 50", "it needs cycle 50"),
+        std::pair("y: phi, x: drag_kg_per_s, at_cycle: 50", "runs lack a checkpoint at cycle 50"),
         std::pair("y: stress_xy_Pa, x: shear_strain, cycles: [1, 2], show: traces",
                   "shear_strain is 0 at whole cycles"),
         std::pair("y: phi, minus: {fluid: still}",
                   "2 variants have fluid=still; `minus` must select"),
         std::pair("y: phi, minus: {grains: 700}", "no variant has grains=700; `minus` must select"),
         std::pair("y: phi, minus: {fluid: still, walls: rough}",
-                  "fluid=still,walls=smooth, fluid=cell,walls=smooth have other packings than"),
+                  "omits fluid=still,walls=smooth, fluid=cell,walls=smooth, because fluid=still"),
         std::pair("y: phi, at_cycle: 2", "at_cycle has no effect")}) {
     const auto found = warnings(fmt::format("plots: [{{name: own, {}}}]\n", plot));
     ASSERT_EQ(found.size(), 1U) << plot;
