@@ -571,12 +571,15 @@ std::vector<std::pair<string, const Placed<Spec>*>> stated_in(
 /// figures, and in claims over the runs of other experiments (`of`).
 void check_primary(const Manifest& manifest, const std::vector<Scale>& scales,
                    ProblemList& problems) {
-  std::set<string> ids, unchecked;
+  std::set<string> ids, unchecked, statements;
   for (const Scale& scale : scales) {
     if (scale.primary.empty()) continue;
     const std::vector<FrameRun> runs = planned_runs(manifest, scale, variants_of(scale));
     for (const auto& [place, claim] : stated_in(manifest, &Manifest::claims)) {
-      for (const ClaimSpec& one : each_of(*claim, runs)) ids.insert(one.id);
+      for (const ClaimSpec& one : each_of(*claim, runs)) {
+        ids.insert(one.id);
+        statements.insert(stated(one, sides_of(one, runs).names).text);
+      }
       if (!manifest.of.empty()) unchecked.insert(claim->id);
     }
   }
@@ -592,6 +595,7 @@ void check_primary(const Manifest& manifest, const std::vector<Scale>& scales,
   for (const Scale& scale : scales) {
     for (const auto& [id, at] : scale.primary) {
       if (ids.contains(id) || unchecked.contains(without_value(id))) continue;
+      if (statements.contains(id)) continue;  // as in older manifests
       if (std::ranges::count(ids, id, without_value) > 0) continue;
       problems.add(at, "primary", "is not the id of a claim", printable(id),
                    format("The claims are: {}.", ids.empty() ? "none" : some_of(ids, 20)));
@@ -628,6 +632,11 @@ void warn_of_figures(const Manifest& manifest, const ScaleRuns& here,
   }
   for (const auto& [place, stated_claim] : stated_in(manifest, &Manifest::claims)) {
     for (const ClaimSpec& claim : each_of(*stated_claim, here.runs)) {
+      const string statement = stated(claim, sides_of(claim, here.runs).names).text;
+      if (std::ranges::count(here.scale.primary, statement, &PrimaryClaim::id) > 0) {
+        warnings.push_back(format("primary: '{}' is the statement of a claim. Write its id, {}.",
+                                  statement, claim.id));
+      }
       const ClaimProblems found = problems_of(claim, here);
       // A shipped claim (ClaimSpec::listed) may select values that no run of this experiment has.
       if (claim.listed && !found.refusals.empty()) continue;

@@ -249,6 +249,24 @@ TEST(FigureWarnings, OfListedFigures) {
   })) << fmt::format("{}", fmt::join(short_runs, "\n"));
 }
 
+// Manifests of earlier versions name claims by what they say. A label is part of what a claim says.
+TEST(FigureWarnings, OfPrimaryClaimsThatAreStatements) {
+  const auto found = [](const std::string& primary, const std::string& more) {
+    return warnings(4,
+                    claim("compare: phi, at_cycle: 4") + "primary: ['" + primary + "']\n" + more);
+  };
+  const std::string says = "own: phi at cycle 4 is the same for fluid=still and fluid=cell";
+  const std::string label = "labels: {\"fluid=still\": water}\n";
+  EXPECT_EQ(found("own", ""), Strings{});
+  for (const auto& [statement, with] :
+       {std::pair{says, std::string()},
+        {std::string("own: phi at cycle 4 is the same for water and fluid=cell"), label}}) {
+    EXPECT_EQ(found(statement, with), Strings{"primary: '" + statement +
+                                              "' is the statement of a claim. Write its id, own."});
+  }
+  EXPECT_THROW(found(says, label), ManifestError);
+}
+
 // bad.txt has the entries that are refused.
 TEST(Primary, NamesClaimsWithAndWithoutTheValueOfForEach) {
   const std::string claims =
