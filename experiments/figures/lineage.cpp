@@ -296,7 +296,7 @@ std::optional<PublishedFile> find_published(const Store& store, const std::files
       read_plain(std::filesystem::weakly_canonical(file), StoreLimits::published_bytes);
   if (!content) {
     throw NotFound(file.string() +
-                   ": there is no such file, or it is larger than any file of a figure");
+                   ": no readable file, or larger than any file of a figure");
   }
   const std::string sha256 = sha256_hex(*content);
   const std::string name = file.filename().string();
