@@ -6,10 +6,10 @@
 
 #include <algorithm>
 #include <map>
-#include <stdexcept>
 #include <utility>
 #include <vector>
 
+#include "provenance/errors.hpp"
 #include "provenance/io/file.hpp"
 #include "provenance/json_text.hpp"
 #include "provenance/limits.hpp"
@@ -220,9 +220,9 @@ bool is_crate_of(const fs::path& folder, const std::string& run) {
 void make_folder(const fs::path& path) {
   const fs::file_status status = fs::symlink_status(path);
   if (fs::exists(status) && !fs::is_directory(status)) {
-    throw std::invalid_argument(path.string() +
-                                ": this must be a folder, but it is a file or a link; remove "
-                                "it, or choose another folder");
+    throw UsageError(path.string() +
+                     ": this must be a folder, but it is a file or a link; remove "
+                     "it, or choose another folder");
   }
   fs::create_directory(path);
 }
@@ -293,8 +293,8 @@ std::vector<std::string> write_ro_crate(const Store& store, const CrateFacts& fa
                                         const fs::path& folder) {
   make_folder(folder);
   if (!fs::is_empty(folder) && !is_crate_of(folder, facts.stages.back().stage.id)) {
-    throw std::invalid_argument(folder.string() +
-                                ": the folder is not an export of this run; choose another folder");
+    throw UsageError(folder.string() +
+                     ": the folder is not an export of this run; choose another folder");
   }
   std::vector<std::string> written;
   for (const char* subfolder : {"checkpoints", "manifests"}) make_folder(folder / subfolder);

@@ -30,7 +30,7 @@ nlohmann::json ro_crate_metadata(const CrateFacts& facts);
 /// Writes the metadata, the manifests and every checkpoint that was neither rejected nor pruned.
 /// Each checkpoint is verified. `folder` must be missing, empty, or an earlier export of the same
 /// run, which is updated: files of checkpoints that are no longer kept are deleted. Returns the
-/// files, relative to the folder. Throws std::invalid_argument for any other folder and
+/// files, relative to the folder. Throws UsageError for any other folder and
 /// StoreDamaged for a damaged checkpoint. After an error the folder may be incomplete.
 std::vector<std::string> write_ro_crate(const Store& store, const CrateFacts& facts,
                                         const std::filesystem::path& folder);

@@ -7,17 +7,10 @@
 #include <map>
 #include <stdexcept>
 
+#include "experiments/manifest/document.hpp"
+
 namespace shearcell {
 namespace {
-
-constexpr std::string_view replacement = "\xEF\xBF\xBD";  // U+FFFD
-
-/// Replaces invalid UTF-8 by U+FFFD. The JSON library does this when it writes a string.
-std::string valid_utf8(std::string_view text) {
-  const std::string dumped =
-      nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-  return nlohmann::json::parse(dumped).get<std::string>();
-}
 
 using Escapes = std::map<char, std::string_view>;
 
@@ -51,15 +44,9 @@ kainjow::mustache::data template_value(const nlohmann::json& value) {
 }  // namespace
 
 std::string escape_html(std::string_view text) {
-  static const Escapes escapes = [] {
-    Escapes all = {{'&', "&amp;"},  {'<', "&lt;"},   {'>', "&gt;"},
-                   {'"', "&quot;"}, {'\'', "&#39;"}, {'\x7f', replacement}};
-    for (char control = 0; control < ' '; ++control) {
-      if (control != '\t' && control != '\n') all[control] = replacement;
-    }
-    return all;
-  }();
-  return escaped(valid_utf8(text), escapes);
+  static const Escapes escapes = {
+      {'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\'', "&#39;"}};
+  return escaped(for_terminal(text), escapes);
 }
 
 std::string text_html(const Text& text) {

@@ -12,8 +12,8 @@
 
 namespace shearcell {
 
-/// Escapes text for element content and quoted attribute values. Control characters, except tab and
-/// line feed, and bytes that are not UTF-8 become U+FFFD.
+/// Escapes text for element content and quoted attribute values. Also escapes the characters that
+/// for_terminal() escapes, such as control characters and bytes that are not UTF-8.
 std::string escape_html(std::string_view text);
 
 std::string text_html(const Text& text);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <set>
 
 #include "analysis/chart.hpp"
@@ -54,34 +55,8 @@ struct ChosenRun : Run {
   std::size_t wall_grains = 0;
 };
 
-template <class Value>
-void thin_out(std::vector<Value>& values, std::size_t count) {
-  std::vector<Value> kept;
-  for (const std::size_t i : evenly(values.size(), count)) kept.push_back(std::move(values[i]));
-  values = std::move(kept);
-}
-
-/// Returns the last run of each variant. If there are more than `limit` variants, returns runs of
-/// `limit` evenly spaced variants.
-std::vector<ChosenRun> runs_of_experiment(const Store& store, const std::vector<Run>& runs,
-                                          const std::string& experiment, std::size_t limit) {
-  std::vector<ChosenRun> last;
-  for (const Run& run : runs) {
-    if (run.place.experiment != experiment) continue;
-    std::vector<CheckpointRecord> checkpoints =
-        asked_checkpoints(run.stage, asks_of(run.stage.memberships),
-                          store.checkpoints(run.stage.id))
-            .made;
-    if (checkpoints.empty()) continue;
-    auto same = std::ranges::find(last, run.place.variant,
-                                  [](const ChosenRun& one) { return one.place.variant; });
-    if (same == last.end()) same = last.emplace(last.end());
-    *same = {run, std::move(checkpoints)};
-  }
-  thin_out(last, limit);
-  return last;
-}
-
+/// Returns the runs of PackingChoice::runs. If these are empty, returns for each experiment the
+/// last run of each variant. If an experiment has too many variants, they are chosen evenly spaced.
 std::vector<ChosenRun> choose(const Store& store, const std::vector<std::string>& experiments,
                               const RunSelection& selection, const PackingChoice& choice) {
   std::vector<ChosenRun> chosen;
@@ -93,7 +68,16 @@ std::vector<ChosenRun> choose(const Store& store, const std::vector<std::string>
   std::set<std::string> known;
   const std::vector<Run> runs = newest_runs(select_runs(store, selection)).runs;
   for (const std::string& experiment : experiments) {
-    for (ChosenRun& run : runs_of_experiment(store, runs, experiment, choice.runs_per_experiment)) {
+    nlohmann::ordered_map<std::string, ChosenRun> last;  // by variant
+    for (const Run& run : runs) {
+      if (run.place.experiment != experiment) continue;
+      auto checkpoints = asked_checkpoints(run.stage, asks_of(run.stage.memberships),
+                                           store.checkpoints(run.stage.id))
+                             .made;
+      if (!checkpoints.empty()) last[run.place.variant] = {run, std::move(checkpoints)};
+    }
+    for (const std::size_t k : evenly(last.size(), choice.runs_per_experiment)) {
+      ChosenRun& run = std::next(last.begin(), static_cast<std::ptrdiff_t>(k))->second;
       if (known.insert(run.stage.id).second) chosen.push_back(std::move(run));
     }
   }
@@ -145,7 +129,13 @@ void fit(std::vector<ChosenRun>& runs, const PackingChoice& choice, Packings& pa
   }
   std::size_t frames = std::max<std::size_t>(1, choice.frames);
   while (frames > 1 && bytes_with(runs, frames) > choice.budget) --frames;
-  for (ChosenRun& run : runs) thin_out(run.checkpoints, frames);
+  for (ChosenRun& run : runs) {
+    std::vector<CheckpointRecord> kept;
+    for (const std::size_t k : evenly(run.checkpoints.size(), frames)) {
+      kept.push_back(std::move(run.checkpoints[k]));
+    }
+    run.checkpoints = std::move(kept);
+  }
 }
 
 std::string frame_name(const CheckpointRecord& record) {

@@ -351,7 +351,7 @@ TEST_F(TimeSteps, ArePrintedByPlanWithWarnings) {
   expect(0, {"plan", small}, {"below 0.15"});
   const nlohmann::json both = json({"plan", small, sound, "--json"});
   ASSERT_EQ(both.at("warnings").size(), 2U);
-  EXPECT_TRUE(has(both.at("warnings")[1].get<std::string>(), "below 0.15"));
+  EXPECT_TRUE(has(both.at("warnings")[0].get<std::string>(), "below 0.15"));
   EXPECT_EQ(both.at("experiments").size(), 2U);
   EXPECT_EQ(json({"plan", stiffened, "--json"}).at("stages").at(1).at("time_step"), nullptr);
 }

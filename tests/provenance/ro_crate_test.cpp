@@ -131,18 +131,16 @@ TEST_F(Crate, UpdatesAnEarlierExportAndNothingElse) {
   EXPECT_EQ(write_ro_crate(store_, crate_facts(store_, history_.sheared), crate_), files_);
   EXPECT_NE(read_bytes(damaged), "spoilt");
   EXPECT_EQ(read_bytes(crate_ / "notes.txt"), "mine");
-  EXPECT_THROW(write_ro_crate(store_, crate_facts(store_, history_.packing), crate_),
-               std::invalid_argument);
+  EXPECT_THROW(write_ro_crate(store_, crate_facts(store_, history_.packing), crate_), UsageError);
 
   const fs::path foreign = folder_.path() / "foreign";
   fs::create_directory(foreign);
   write_bytes(foreign / "ro-crate-metadata.json", "{\"@graph\":[{\"@id\":\"./\"}, 3]}");
-  EXPECT_THROW(write_ro_crate(store_, crate_facts(store_, history_.sheared), foreign),
-               std::invalid_argument);
+  EXPECT_THROW(write_ro_crate(store_, crate_facts(store_, history_.sheared), foreign), UsageError);
   EXPECT_THROW(write_ro_crate(store_, crate_facts(store_, history_.sheared), crate_ / "notes.txt"),
-               std::invalid_argument);
+               UsageError);
   EXPECT_THROW(write_ro_crate(store_, crate_facts(store_, history_.sheared), store_.folder()),
-               std::invalid_argument);
+               UsageError);
 }
 
 TEST_F(Crate, FollowsNoLinkOutOfItsFolder) {
@@ -150,8 +148,7 @@ TEST_F(Crate, FollowsNoLinkOutOfItsFolder) {
   fs::create_directory(outside);
   fs::remove_all(crate_ / "checkpoints");
   fs::create_directory_symlink(outside, crate_ / "checkpoints");
-  EXPECT_THROW(write_ro_crate(store_, crate_facts(store_, history_.sheared), crate_),
-               std::invalid_argument);
+  EXPECT_THROW(write_ro_crate(store_, crate_facts(store_, history_.sheared), crate_), UsageError);
   EXPECT_TRUE(fs::is_empty(outside));
   fs::remove(crate_ / "checkpoints");
   const fs::path manifest = crate_ / "manifests" / (sha256_hex("manifest") + ".yaml");
