@@ -32,10 +32,13 @@ json packed(const std::vector<std::int32_t>& values) {
   return json::binary(std::vector(bytes, bytes + 4 * values.size()));
 }
 
+constexpr const char* invalid_map = "the stored map of crystallites is invalid";
+
 std::vector<std::int32_t> unpacked(const json& result, const char* key) {
   const auto& bytes = result.at(key).get_binary();
+  if (bytes.size() % 4 != 0) throw AnalysisError(invalid_map);
   std::vector<std::int32_t> values(bytes.size() / 4);
-  std::copy_n(bytes.begin(), 4 * values.size(), reinterpret_cast<std::uint8_t*>(values.data()));
+  std::ranges::copy(bytes, reinterpret_cast<std::uint8_t*>(values.data()));
   return values;
 }
 
@@ -82,7 +85,7 @@ void read_map(const json& result, Measures& measures) {
   result.at("width_d").get_to(map.width);
   result.at("bottom_d").get_to(map.bottom);
   result.at("top_d").get_to(map.top);
-  if (!is_valid(map)) throw AnalysisError("the stored map of crystallites is invalid");
+  if (!is_valid(map)) throw AnalysisError(invalid_map);
   measures.crystallite_map = std::move(map);
 }
 
