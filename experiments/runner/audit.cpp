@@ -62,17 +62,22 @@ void check_stage(const Stage& stage) {
   for (const Membership& m : stage.memberships) check_place(m.place, inputs, stage.resolved);
 }
 
-/// Steps at which the run may have been completed. Each completed attempt gives two steps, which
-/// can differ after a merge: the step of its last checkpoint, and the largest step of the run so
-/// far.
-std::set<std::uint64_t> completed_steps(const Store& store, const std::string& run) {
-  const RunLineage stage = run_lineage(store, run).back();
+/// Steps of the parent at which the stage may have started. A packing must have been completed.
+/// Each completed attempt gives two steps, which can differ after a merge: the step of its last
+/// checkpoint, and the largest step of the packing so far.
+std::set<std::uint64_t> starting_steps(const Store& store, const Stage& stage) {
   std::set<std::uint64_t> steps;
+  if (store.stage(stage.parent).kind != name_of(StageKind::prepare)) {
+    const auto start = starting_state(store, stage, read_stage(stage.resolved).parameters);
+    if (start) steps.insert(start->step);
+    return steps;
+  }
+  const RunLineage packing = run_lineage(store, stage.parent).back();
   std::uint64_t furthest = 0;
-  for (const Attempt& attempt : stage.attempts) {
+  for (const Attempt& attempt : packing.attempts) {
     std::uint64_t last = furthest;
     for (const std::string& sha256 : attempt.checkpoints) {
-      const CheckpointRecord& record = stage.find(sha256)->record;
+      const CheckpointRecord& record = packing.find(sha256)->record;
       last = record.step;
       if (record.state != CheckpointState::rejected) furthest = std::max(furthest, last);
     }
@@ -81,9 +86,11 @@ std::set<std::uint64_t> completed_steps(const Store& store, const std::string& r
   return steps;
 }
 
-/// Throws StoreDamaged if the stage started from a parent checkpoint whose step is not in `steps`.
-/// After a merge, accepts a checkpoint without a record: merge() keeps only one file of a state.
-void check_beginning(const Store& store, const Stage& stage, const std::set<std::uint64_t>& steps) {
+/// Throws StoreDamaged if the stage started from a wrong checkpoint of its parent. After a merge,
+/// accepts a checkpoint without a record: merge() keeps only one file of a state.
+void check_beginning(const Store& store, const Stage& stage) {
+  if (stage.parent.empty()) return;
+  const std::set<std::uint64_t> steps = starting_steps(store, stage);
   const std::vector<CheckpointRecord> known = store.checkpoints(stage.parent, Listed::all);
   for (const Event& event : store.events(run_stream(stage.id), events::RunStarted::kType)) {
     const auto from = std::get<events::RunStarted>(events::decode(event)).parent_checkpoint;
@@ -245,22 +252,13 @@ std::uint64_t seed_of(const Head& head) {
 std::vector<Finding> check_runs(const Store& store) {
   const Store::Snapshot snapshot(store);
   std::vector<Finding> findings;
-  std::map<std::string, std::set<std::uint64_t>> completed;  // by parent
   for (const Stage& stage : store.stages()) {
     const auto note = [&](Finding::Severity severity, const std::exception& problem) {
       findings.push_back({severity, fmt::format("run {:.12}", stage.id), stage.id, problem.what()});
     };
     try {
       check_stage(stage);
-      if (stage.parent.empty()) continue;
-      if (store.stage(stage.parent).kind != name_of(StageKind::prepare)) {
-        const auto start = starting_state(store, stage, read_stage(stage.resolved).parameters);
-        check_beginning(store, stage, start ? std::set{start->step} : std::set<std::uint64_t>{});
-        continue;
-      }
-      const auto [ends, fresh] = completed.try_emplace(stage.parent);
-      if (fresh) ends->second = completed_steps(store, stage.parent);
-      check_beginning(store, stage, ends->second);
+      check_beginning(store, stage);
     } catch (const StoreDamaged& damage) {
       note(Finding::Severity::error, damage);
     } catch (const UnreadableRecord& unknown) {  // recorded by another version of the program

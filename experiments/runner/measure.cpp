@@ -61,9 +61,8 @@ class Measuring {
       const std::pair which = {std::string_view(one.checkpoint->sha256), one.every};
       const auto [entry, fresh] = known.try_emplace(which, tasks_.size());
       place_.push_back(entry->second);
-      if (!fresh) continue;
       sources_.read_run(one.checkpoint->run);
-      look_up(tasks_.emplace_back(Task{one}));
+      if (fresh) look_up(tasks_.emplace_back(Task{one}));
     }
   }
 
