@@ -767,7 +767,7 @@ class PackingReader {
                     "decimal point, not a comma.");
       }
       if (more) leave(table.more);
-      GrainRow& row = rows.emplace_back(line);
+      GrainRow& row = rows.emplace_back(GrainRow{.line = line});
       for (const Use& use : uses) {
         const auto q = static_cast<std::size_t>(use.quantity);
         const string_view field = unquoted(fields[use.field]);
