@@ -140,13 +140,6 @@ QueuedTask task_of(const Submission& submission, std::size_t task) {
 
 }  // namespace
 
-void Share::add(const Share& other) {
-  packings.insert(packings.end(), other.packings.begin(), other.packings.end());
-  runs.insert(runs.end(), other.runs.begin(), other.runs.end());
-  particle_steps += other.particle_steps;
-  core_seconds += other.core_seconds;
-}
-
 std::vector<Share> shares_of(const std::vector<Plan>& plans, const Store* store) {
   const Rates rates(store == nullptr ? std::vector<Stage>{} : store->stages());
   std::vector<Share> shares;
@@ -174,7 +167,11 @@ std::vector<Share> share_out(std::vector<Share> packings, std::size_t tasks) {
     const auto load = [](const Share& share) {
       return std::pair(share.core_seconds, share.packings.size());
     };
-    std::ranges::min_element(shares, std::less(), load)->add(packing);
+    Share& least = *std::ranges::min_element(shares, std::less(), load);
+    std::ranges::copy(packing.packings, std::back_inserter(least.packings));
+    std::ranges::copy(packing.runs, std::back_inserter(least.runs));
+    least.particle_steps += packing.particle_steps;
+    least.core_seconds += packing.core_seconds;
   }
   return shares;
 }

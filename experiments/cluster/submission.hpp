@@ -28,8 +28,6 @@ struct Share {
   std::vector<std::string> runs;      ///< ids of the unfinished stages of these packings
   double particle_steps = 0;          ///< remaining work, including the packings
   double core_seconds = 0;            ///< time on one core [s], estimated with Rates (outlook.hpp)
-
-  void add(const Share& other);
 };
 
 /// Returns one share for each packing with unfinished runs, in the order of the plans. A run that

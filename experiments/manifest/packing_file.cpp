@@ -144,20 +144,19 @@ Meaning meaning_of(const Column& column, bool units) {
       "(.+?)([ _]|[ _]*[\\[(])(d|[mcu]?m|\u00b5m|\u03bcm)(_per_s|/s)?[\\])]?");
   // A prefix that LAMMPS or a user writes before a name, and an index or a unit after it.
   static const string before = "([cfv]_|d2?_)?(particle|grain|sphere|atom|bead|ball)?[ _]?(";
-  static const string after =
-      ")([ _]*[\\[({/:.].*|[ _]([xyz0-9]|m|d|si|lj|.?.m)([ _]?(per|p)?[ _]?s)?)?";
+  static const string after = ")([ _]*[\\[({/:.].*|[ _](m|d|si|lj|.?.m)([ _]?(per|p)?[ _]?s)?)?";
   static const string size = "(?!.*(max|min|cut|curvature|gyration|ratio)).*";
   static const std::regex radius(before + "r|rads?|rp" + after + "|" + size + "radi(us|i).*");
-  static const std::regex diameter(before + "d|dp|dias?|sizes?|sigma|shape[xyz]" + after + "|" +
-                                   size + "diam(?!o).*");
+  static const std::regex diameter(before + "d|dp|dias?|sizes?|sigma|shape[ _]?[xyz]" + after +
+                                   "|" + size + "diam(?!o).*");
   static const std::regex velocity(
       "(?!.*(ang|rot|omega|spin|vir|vor))"
       "(" +
-      before + "(v|mom|speed)[xyz0-9]?|v(cm|el|lin|avg)?[xyz]u?|[xyz](v|vel|dot)" + after +
+      before + "(v|mom|speed)[ _]?[xyz0-9]?|v(cm|el|lin|avg)?[xyz]u?|[xyz](v|vel|dot)" + after +
       "|[pu][ _]?([xyz]|[:.\\[(][0-3xyz][\\])]?)|d([xyzr]|pos)/?dt|([cf]_)?vel.*|"
       ".*(veloc|momenta|momentum).*)");
   static const std::regex position(
-      before + "(pos|positions?|coords?|coordinates?|points?)[xyz0-9]?|[xyz](su?|pos|coord)" +
+      before + "(pos|positions?|coords?|coordinates?|points?)[ _]?[xyz0-9]?|[xyz](su?|pos|coord)" +
       after);
   const string full = lower(column.name);
   string name = full;
@@ -768,7 +767,7 @@ class PackingReader {
                     "decimal point, not a comma.");
       }
       if (more) leave(table.more);
-      GrainRow& row = rows.emplace_back(line);
+      GrainRow& row = rows.emplace_back(GrainRow{.line = line});
       for (const Use& use : uses) {
         const auto q = static_cast<std::size_t>(use.quantity);
         const string_view field = unquoted(fields[use.field]);
