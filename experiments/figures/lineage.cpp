@@ -295,8 +295,7 @@ std::optional<PublishedFile> find_published(const Store& store, const std::files
   const auto content =
       read_plain(std::filesystem::weakly_canonical(file), StoreLimits::published_bytes);
   if (!content) {
-    throw NotFound(file.string() +
-                   ": no readable file, or larger than any file of a figure");
+    throw NotFound(file.string() + ": no readable file, or larger than any file of a figure");
   }
   const std::string sha256 = sha256_hex(*content);
   const std::string name = file.filename().string();

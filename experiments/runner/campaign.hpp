@@ -28,9 +28,9 @@ struct CampaignResult {
   /// Stages that cannot be computed: the parent failed or was interrupted, LAMMPS is missing, the
   /// record cannot be read, or a checkpoint that the stage needs was pruned or never recorded.
   std::size_t blocked = 0;
-  std::size_t damaged = 0;            ///< stages with a damaged file in the store
-  std::size_t files_deleted = 0;      ///< checkpoint files deleted because of --keep-every
-  bool left_failed = false;           ///< failed stages were left out because of --leave-failed
+  std::size_t damaged = 0;        ///< stages with a damaged file in the store
+  std::size_t files_deleted = 0;  ///< checkpoint files deleted because of --keep-every
+  bool left_failed = false;       ///< failed stages were left out because of --leave-failed
   /// On failures, damage, and states with another bits_version.
   std::vector<std::string> messages = {};
 
