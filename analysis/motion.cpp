@@ -93,21 +93,22 @@ Motion motion(const Checkpoint& earlier, const Checkpoint& later) {
   return found;
 }
 
-enum class Place { disordered, inside_crystal, crystal_boundary };
+enum class GrainPlace { disordered, inside_crystal, crystal_boundary };
 
 /// The place of each grain. A crystalline grain is at the boundary if a neighbour is disordered.
-std::vector<Place> places_of(const Checkpoint& checkpoint,
-                             const std::vector<Structure>& structure) {
-  std::vector<Place> places;
+std::vector<GrainPlace> places_of(const Checkpoint& checkpoint,
+                                  const std::vector<Structure>& structure) {
+  std::vector<GrainPlace> places;
   for (const Structure one : structure) {
-    places.push_back(one == Structure::disordered ? Place::disordered : Place::inside_crystal);
+    places.push_back(one == Structure::disordered ? GrainPlace::disordered
+                                                  : GrainPlace::inside_crystal);
   }
   for_each_pair(checkpoint.cell, pose_of(checkpoint), checkpoint.state.position, motion_neighbour_d,
                 [&](std::int32_t i, std::int32_t j, const Eigen::Vector3d&) {
-                  Place &a = places[static_cast<std::size_t>(i)],
-                        &b = places[static_cast<std::size_t>(j)];
-                  if ((a == Place::disordered) == (b == Place::disordered)) return;
-                  (a == Place::disordered ? b : a) = Place::crystal_boundary;
+                  GrainPlace &a = places[static_cast<std::size_t>(i)],
+                             &b = places[static_cast<std::size_t>(j)];
+                  if ((a == GrainPlace::disordered) == (b == GrainPlace::disordered)) return;
+                  (a == GrainPlace::disordered ? b : a) = GrainPlace::crystal_boundary;
                 });
   return places;
 }
@@ -132,8 +133,8 @@ json means_of(const Motion& moved, const GrainMeasures& grains, const std::strin
 }
 
 json one_cycle(const Checkpoint& checkpoint, const GrainMeasures& grains, const Motion& moved) {
-  const std::vector<Place> places = places_of(checkpoint, grains.structure);
-  const auto square_in = [&](Place place) {
+  const std::vector<GrainPlace> places = places_of(checkpoint, grains.structure);
+  const auto square_in = [&](GrainPlace place) {
     return mean_over(grains.interior, [&](std::size_t i) {
       return places[i] == place ? moved.square(i) : std::nan("");
     });
@@ -142,9 +143,9 @@ json one_cycle(const Checkpoint& checkpoint, const GrainMeasures& grains, const 
   values["reversible_percent"] = percent_of(grains.interior, [&](std::size_t i) {
     return moved.square(i) <= reversible_d * reversible_d;
   });
-  values["msd_inside_crystal_d2"] = square_in(Place::inside_crystal);
-  values["msd_crystal_boundary_d2"] = square_in(Place::crystal_boundary);
-  values["msd_disordered_d2"] = square_in(Place::disordered);
+  values["msd_inside_crystal_d2"] = square_in(GrainPlace::inside_crystal);
+  values["msd_crystal_boundary_d2"] = square_in(GrainPlace::crystal_boundary);
+  values["msd_disordered_d2"] = square_in(GrainPlace::disordered);
   return values;
 }
 
