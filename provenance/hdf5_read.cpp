@@ -115,8 +115,8 @@ Object Object::root(Bytes file, std::size_t user_block) {
   if (file.size() < superblock_size) refuse("file", "it is truncated");
   Cursor cursor(file);
   // Version 0; addresses and lengths have 8 bytes.
-  const bool known = text_in(cursor.take(8)) == "\x89HDF\r\n\x1a\n" && cursor.number(5) == 0 &&
-                     cursor.number(2) == 0x0808;
+  if (text_in(cursor.take(8)) != "\x89HDF\r\n\x1a\n") refuse("file", "it is not HDF5");
+  const bool known = cursor.number(5) == 0 && cursor.number(2) == 0x0808;
   cursor.take(9);
   if (!known || cursor.number(8) != user_block) {
     refuse("file", "its superblock is not one that this program writes");

@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <map>
 #include <numeric>
@@ -17,6 +18,7 @@
 #include "experiments/manifest/start.hpp"
 #include "experiments/manifest/suggest.hpp"
 #include "experiments/manifest/variants.hpp"
+#include "protocols/settle.hpp"
 #include "provenance/json_text.hpp"
 #include "provenance/sha256.hpp"
 #include "provenance/words.hpp"
@@ -203,6 +205,19 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
             placed(*plan.file, run.packing, seed);  // throws if the grains do not fit
         plan.read = fmt::format("{}: {}", plan.file->path, grains.read);
         if (!grains.warning.empty()) plan.warnings.push_back(grains.warning);
+        const Cell& cell = grains.cell;
+        const double height = std::fabs(grains.state.wall_height -
+                                        (cell.moving == MovingWall::top ? cell.bottom : cell.top));
+        const double time =
+            pressing_time(settle_scene(run.packing), height,
+                          static_cast<double>(run.packing.grains) / (cell.width * cell.depth));
+        if (plan.file->file.settles && time > run.packing.settle_time_limit_s) {
+          plan.warnings.push_back(fmt::format(
+              "{}: the packing of this file is {:.6g} d high. The moving wall needs about {:.2g} s "
+              "to press the grains together, so settling fails at settle_time_limit_s ({:g} s). "
+              "Remove the empty space above and below the grains, or raise settle_time_limit_s.",
+              plan.file->path, height, time, run.packing.settle_time_limit_s));
+        }
       }
 
       const std::string& same = variant_of.emplace(run.stage.id, run.place.variant).first->second;

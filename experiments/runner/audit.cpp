@@ -187,10 +187,13 @@ void check_pruned(const Store& store, DerivedCache& cache, MeasureCheck& check) 
       check.absent += found.absent;
     }
   }
-  if (check.absent == 0) return;
-  note(cache.is_unread() ? Severity::unread : Severity::error, "", cache.trouble());
-  note(Severity::error, "", cache.replaced());
-  if (cache.is_unread()) check.absent = 0;  // unknown
+  if (cache.is_unread()) {
+    note(Severity::unread, "", cache.trouble());
+    check.absent = 0;  // unknown
+  } else if (check.absent > 0) {
+    note(Severity::error, "", cache.trouble());
+    note(Severity::error, "", cache.replaced());
+  }
 }
 
 /// Copies the measures that the store lacks. Returns why they cannot be copied; "" if they can.

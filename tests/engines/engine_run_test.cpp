@@ -257,7 +257,7 @@ TEST_F(EngineRun, TheEndOfAnExportedScriptStartsARun) {
   script.replace(script.find("# set atom"), 2, "");
   write_bytes(path("smooth_top/in.frame_0"), script);
   run_script(path("smooth_top"), "in.frame_0", {});
-  expect(2, {"run", "again.yaml", "--cycles", "0", "-q"}, {"the grains have diameters from"});
+  expect(2, {"run", "again.yaml", "--cycles", "0", "-q"}, {"diameter: is not the diameter of"});
 }
 
 TEST_F(EngineRun, ReportsThatLammpsIsMissing) {
@@ -268,7 +268,7 @@ TEST_F(EngineRun, ReportsThatLammpsIsMissing) {
   EXPECT_TRUE(has(run({"plan", manifest, "--engine", "lammps"}).out, "Debian package lammps"));
   const std::string both =
       write("both.yaml", tiny_manifest("", "sweep: {grid: {engine: [shearcell, lammps]}}\n"));
-  expect(1, {"run", both}, {"Debian package lammps", "`--variant engine=shearcell` computes only"});
+  expect(1, {"run", both}, {"Debian package lammps"});
   expect(0, {"run", both, "--variant", "engine=shearcell", "--cycles", "0", "-q"});
 }
 

@@ -244,7 +244,7 @@ TEST_F(CostOfARun, CountsTheTimeThatAStrongDragTakesToSettle) {
   EXPECT_LT(seconds, 2 * expected);
   const std::string too_short = text(0.9 * expected);
   EXPECT_TRUE(has(warnings(too_short), "drag_kg_per_s 0.05"));
-  EXPECT_TRUE(has(warnings(too_short), "Lower the drag"));
+  EXPECT_TRUE(has(warnings(too_short), "Change the drag"));
   EXPECT_TRUE(has(warnings(tiny_manifest("  drag_kg_per_s: 1.28e3\n")), "drag_kg_per_s 1280"));
 }
 

@@ -41,7 +41,7 @@ TEST_F(HostileManifest, ImpossibleParametersAreRejectedWithTheirLine) {
        {Case{"fill_packing_fraction: 1e-5", 2, ":4:26: fill_packing_fraction: the cell for"},
         Case{"fill_packing_fraction: 1e-10", 2, ":4:26: base.fill_packing_fraction: is out"},
         Case{"nominal_packing_fraction: 1e-15", 2, ":4:29: base.nominal_packing_fraction: is out"},
-        Case{"nominal_packing_fraction: 1e-6", 2, ":4:29: nominal_packing_fraction: the random"},
+        Case{"nominal_packing_fraction: 1e-6", 2, ":4:29: fill_packing_fraction: the random"},
         Case{"settle_time_step_s: 1e-18", 2, ":4:23: base.settle_time_step_s: is out of range"},
         Case{"settle_time_step_s: 1e-14", 2, ":4:23: settle_time_step_s: settling may need"},
         Case{"drag_kg_per_s: 1e-320", 0, "left: "}, Case{"gravity_m_per_s2: 1e-320", 0, "left: "},
