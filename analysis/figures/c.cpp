@@ -68,8 +68,11 @@ struct AmplitudeGrowth : AmplitudeRuns {
 
   /// Growth over n_bin cycles, the time for which the supplement follows a crystallite.
   const GrowthAfter& published_bin() const { return after.at(published->n_bin); }
-  /// Median over runs.
-  std::optional<double> onset_cycle() const { return median_wait(waits_for_onset(runs)); }
+
+  std::optional<double> onset_cycle = {};  ///< median over runs
+  // Of published_bin(). Each is computed once, since each is a bootstrap.
+  std::optional<Estimate> monotone = {}, without_absorbed = {}, without_vanished = {};
+  Interval repeated = {};  ///< critical size in 90 % of repeated studies with published_runs runs
 };
 
 std::vector<AmplitudeGrowth> growth_by_amplitude(std::span<const FrameRun> runs) {
@@ -79,6 +82,12 @@ std::vector<AmplitudeGrowth> growth_by_amplitude(std::span<const FrameRun> runs)
     for (const std::int64_t cycles : cycles_to_follow()) {
       one.after.emplace(cycles, GrowthAfter{followed(one.runs, cycles)});
     }
+    const auto& [counts, curve, critical] = one.published_bin();
+    one.onset_cycle = median_wait(waits_for_onset(one.runs));
+    one.monotone = curve.monotone_critical_size();
+    one.without_absorbed = critical_size_without(&GrowthCount::absorbed, counts);
+    one.without_vanished = critical_size_without(&GrowthCount::vanished, counts);
+    one.repeated = curve.repeated_critical_size(published_runs);
   }
   return all;
 }
@@ -150,14 +159,12 @@ Table critical_table(std::span<const AmplitudeGrowth> all) {
   for (const AmplitudeGrowth& one : all) {
     const auto& [counts, curve, critical] = one.published_bin();
     TableRow& row =
-        table.rows.emplace_back(TableRow{one.amplitude, one.published->n_bin, one.onset_cycle()});
-    for (const auto& size : {critical, curve.monotone_critical_size(),
-                             critical_size_without(&GrowthCount::absorbed, counts),
-                             critical_size_without(&GrowthCount::vanished, counts)}) {
+        table.rows.emplace_back(TableRow{one.amplitude, one.published->n_bin, one.onset_cycle});
+    for (const auto& size : {critical, one.monotone, one.without_absorbed, one.without_vanished}) {
       add_size(size, row);
     }
-    const auto [low, high] = curve.repeated_critical_size(published_runs);
-    row.insert(row.end(), {low, high, one.published->critical_size, counts.size()});
+    row.insert(row.end(),
+               {one.repeated.low, one.repeated.high, one.published->critical_size, counts.size()});
     published.points.push_back({one.amplitude, one.published->critical_size});
     if (!critical) continue;
     simulated.points.push_back(point_of(one.amplitude, *critical));
@@ -251,17 +258,15 @@ std::string in_grains(const std::optional<Estimate>& size) {
 Verdict critical_size_is_published(const AmplitudeGrowth& one) {
   const auto& [counts, curve, critical] = one.published_bin();
   const double published = one.published->critical_size;
-  const auto [low, high] = curve.repeated_critical_size(published_runs);
+  const auto [low, high] = one.repeated;
   std::string note = fmt::format("crystallites followed over {} cycles in {} of {} runs",
                                  one.published->n_bin, counts.size(), one.runs.size());
-  if (const auto onset = one.onset_cycle()) {
-    note += fmt::format(", onset at cycle {:.3g} (median)", *onset);
-  }
+  if (one.onset_cycle) note += fmt::format(", onset at cycle {:.3g} (median)", *one.onset_cycle);
   std::optional<Estimate> relative;
   if (critical) {
     const double size = critical->value;
     note += fmt::format("; critical size {:.3g} grains, or {} by a monotone fit of delta_rho", size,
-                        in_grains(curve.monotone_critical_size()));
+                        in_grains(one.monotone));
     note += fmt::format("; 90 % of repeated studies with {} runs would give {} to {}",
                         published_runs, in_grains(low), in_grains(high));
     relative = ratio(*critical, {.value = published,
@@ -281,9 +286,8 @@ Verdict critical_size_is_published(const AmplitudeGrowth& one) {
   note += fmt::format(
       "; critical size {} if absorbed crystallites ({} of {} that grow) are left out, and {} if "
       "vanished crystallites ({} of {} that shrink) are left out",
-      in_grains(critical_size_without(&GrowthCount::absorbed, counts)), all.absorbed, all.larger(),
-      in_grains(critical_size_without(&GrowthCount::vanished, counts)), all.vanished,
-      all.smaller());
+      in_grains(one.without_absorbed), all.absorbed, all.larger(), in_grains(one.without_vanished),
+      all.vanished, all.smaller());
   Verdict verdict =
       decide({.text = fmt::format("C: the critical size at A = {} rad is about {} grains",
                                   one.amplitude, published),

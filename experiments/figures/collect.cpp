@@ -392,7 +392,12 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
         "run` with that version makes it the newest version again (this computes nothing)",
         wanted.path()));
   }
-  for (FrameRun& run : collected.runs) run.packing = packing_before(store, run.stage);
+  std::map<std::string, std::string> packings;  // by id of the parent stage
+  for (FrameRun& run : collected.runs) {
+    const auto [packing, fresh] = packings.try_emplace(run.stage.parent);
+    if (fresh) packing->second = packing_before(store, run.stage);
+    run.packing = packing->second;
+  }
   const bool measured = wanted.figure.form != FigureForm::table;
   if (measured) {
     std::set<std::string> experiments;

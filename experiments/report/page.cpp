@@ -371,7 +371,7 @@ json columns_of(const Experiment& experiment) {
       table.rows, [&](const TableRow& row) { return row[scale] != table.rows.front()[scale]; });
   if (differ) add("scale", "scale", false);
   // The columns between `seed` and `cycle` are `grains` and the swept parameters.
-  const bool labelled = !recorded_manifest(experiment.manifest.text).labels.empty();
+  const bool labelled = !experiment.manifest.content.labels.empty();
   if (labelled || cycle - seed == 2) add("variant", "variant", false);
   for (std::size_t at = seed + 1; at < cycle; ++at) {
     const Field* field = find_field(table.columns[at].name);

@@ -136,16 +136,20 @@ struct CachedMeasure {
 std::vector<CachedMeasure> cached_measures(const CheckpointRecord& record, DerivedCache& cache,
                                            MeasureSources& sources) {
   sources.read_run(record.run);
-  std::vector<CachedMeasure> found;
+  std::vector<CachedMeasure> all, found;
+  std::vector<DerivedKey> keys;
   for (const Provider& one : all_providers()) {
     for (const std::uint64_t every : sources.cadences(record.run)) {
       if (!one.is_kept() || (every != 1 && one.cycles_back == 0)) continue;
-      DerivedObject object{sources.key(record, one, every), {}};
-      auto content = cache.get({&object.key, 1}).front();
-      if (!content) continue;
-      object.content = std::move(*content);
-      found.push_back({&one, every, std::move(object)});
+      keys.push_back(sources.key(record, one, every));
+      all.push_back({&one, every, {keys.back(), {}}});
     }
+  }
+  auto contents = cache.get(keys);  // in one transaction
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    if (!contents[k]) continue;
+    all[k].object.content = std::move(*contents[k]);
+    found.push_back(std::move(all[k]));
   }
   return found;
 }

@@ -62,16 +62,16 @@ class Measuring {
       const auto [entry, fresh] = known.try_emplace(which, tasks_.size());
       place_.push_back(entry->second);
       sources_.read_run(one.checkpoint->run);
-      if (fresh) look_up(tasks_.emplace_back(Task{one}));
+      if (!fresh) continue;
+      tasks_.push_back({one});
+      for (const Provider* each : providers_) {
+        keys_.push_back(sources_.key(*one.checkpoint, *each, one.every));
+      }
     }
   }
 
   MeasureOutcome run() {
-    std::vector<Task*> todo;
-    for (Task& task : tasks_) {
-      const auto wanted = std::span(task.results).first(wanted_);
-      if (std::ranges::any_of(wanted, &json::is_null)) todo.push_back(&task);
-    }
+    const std::vector<Task*> todo = look_up();
     try {
       outcome_ += read_in_parallel(
           todo.size(), options_.workers, [&](std::size_t n) { compute(*todo[n]); },
@@ -92,7 +92,7 @@ class Measuring {
   /// A checkpoint that is measured once. Each provider has one key and one result; the result is
   /// null until it is known.
   struct Task : ToMeasure {
-    std::vector<DerivedKey> keys = {};
+    std::span<const DerivedKey> keys = {};  // in keys_
     std::vector<json> results = {};
   };
 
@@ -108,13 +108,25 @@ class Measuring {
     return record.cycle >= static_cast<double>(first) && record.cycle <= static_cast<double>(last);
   }
 
-  void look_up(Task& task) {
+  /// Takes the results that the cache has. Returns the tasks that lack a requested result.
+  std::vector<Task*> look_up() {
+    std::vector<Task*> todo;
+    const auto found = cache_.get(keys_);  // in one transaction
+    for (std::size_t k = 0; k < tasks_.size(); ++k) {
+      Task& task = tasks_[k];
+      const std::size_t first = k * providers_.size();
+      task.keys = std::span(keys_).subspan(first, providers_.size());
+      take(task, std::span(found).subspan(first, providers_.size()));
+      const auto wanted = std::span(task.results).first(wanted_);
+      if (std::ranges::any_of(wanted, &json::is_null)) todo.push_back(&task);
+    }
+    return todo;
+  }
+
+  /// `found`: the cached object of each key of the task, if there is one.
+  void take(Task& task, std::span<const std::optional<std::vector<std::byte>>> found) {
     const CheckpointRecord& record = *task.checkpoint;
     const bool is_pruned = record.state == CheckpointState::pruned;
-    for (const Provider* one : providers_) {
-      task.keys.push_back(sources_.key(record, *one, task.every));
-    }
-    const auto found = cache_.get(task.keys);
     if (is_pruned && !cache_.trouble().empty()) {
       const std::string why =
           cache_.trouble() + "; the measures of pruned checkpoints are only in derived.sqlite";
@@ -196,6 +208,7 @@ class Measuring {
   std::vector<const Provider*> providers_;  // the requested providers, then MeasureOptions::also
   std::size_t wanted_ = 0;                  // number of requested providers (without `also`)
   std::vector<Task> tasks_;                 // the results of a task are written by one thread
+  std::vector<DerivedKey> keys_;            // of all tasks, one for each provider
   std::vector<std::size_t> place_;          // for each checkpoint, its index in tasks_
   std::mutex mutex_;                        // guards the members below while threads run
   DerivedCache cache_;
