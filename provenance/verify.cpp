@@ -102,7 +102,8 @@ sqlite::Database derive(const EventLog& log, const std::string& name, VerifyRepo
 std::string row_difference(const RowCells* expected, const RowCells* found) {
   const bool surplus = expected == nullptr || (found != nullptr && *found < *expected);
   const std::string row = fmt::format("row ({})", (surplus ? found : expected)->front());
-  if (expected == nullptr || found == nullptr || expected->front() != found->front()) {
+  if (expected == nullptr || found == nullptr || expected->size() != found->size() ||
+      expected->front() != found->front()) {
     return row + (surplus ? " should not be there" : " is missing");
   }
   const auto [a, b] = std::ranges::mismatch(*expected, *found);

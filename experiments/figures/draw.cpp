@@ -152,17 +152,26 @@ std::string verdict_text(const ComputedFigure& figure) {
 
 /// Sets Verdict::primary from the key `primary` of the experiment's manifest at this scale. A
 /// figure of all experiments uses all manifests. A manifest names a claim by the claim's id, with
-/// or without the value of `for_each`. Older manifests name a claim by its statement.
-void mark_primary(const std::vector<RegisteredManifest>& manifests, ComputedFigure& figure) {
+/// or without the value of `for_each`. Older manifests name a claim by its statement. If all runs
+/// are selected, notes the ids with a value that no verdict of the claim has.
+void mark_primary(const std::vector<RegisteredManifest>& manifests, const RunSelection& selected,
+                  ComputedFigure& figure) {
   for (const RegisteredManifest& manifest : manifests) {
     if (!figure.experiment.empty() && manifest.experiment != figure.experiment) continue;
     for (const Scale& scale : scales_of(manifest.content)) {
       if (scale.name != figure.scale && !scale.name.empty()) continue;
-      for (Verdict& verdict : figure.verdicts) {
-        for (const PrimaryClaim& primary : scale.primary) {
-          verdict.primary |= primary.id == verdict.id || primary.id == verdict.claim ||
-                             primary.id == verdict.id.substr(0, verdict.id.find('@'));
+      for (const PrimaryClaim& primary : scale.primary) {
+        bool named = false, same_claim = false;  // same_claim: another value after @
+        for (Verdict& verdict : figure.verdicts) {
+          const std::string claim = verdict.id.substr(0, verdict.id.find('@'));
+          const bool is_it =
+              primary.id == verdict.id || primary.id == verdict.claim || primary.id == claim;
+          verdict.primary |= is_it;
+          named |= is_it;
+          same_claim |= primary.id.substr(0, primary.id.find('@')) == claim;
         }
+        if (named || !same_claim || !selected.variants.empty() || !selected.seeds.empty()) continue;
+        figure.notes.push_back(fmt::format("primary: no verdict has the id {}", primary.id));
       }
     }
   }
@@ -243,7 +252,7 @@ ComputedFigure compute_figure(const Store& store, const WantedFigure& wanted,
   made.notes = std::move(collected.notes);
   const ReadManifests manifests = collected.manifests;
   make_of_runs(store, wanted, options, std::move(collected), made);
-  mark_primary(*manifests, made);
+  mark_primary(*manifests, options.runs, made);
   lay_out(made.tables, options.wide);
   made.caption = caption_of(made, options.runs);
   return made;

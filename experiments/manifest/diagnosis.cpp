@@ -566,9 +566,10 @@ std::vector<std::pair<string, const Placed<Spec>*>> stated_in(
   return found;
 }
 
-/// Reports each entry of `primary` that is the id of no claim at any scale. The values of
-/// `for_each` are not checked if they do not follow from this manifest: in claims of computed
-/// figures, and in claims over the runs of other experiments (`of`).
+/// Reports each entry of `primary` that is neither the id nor, as in older manifests, the statement
+/// of a claim at any scale. The values of `for_each` are not checked if they do not follow from
+/// this manifest: in claims of computed figures, and in claims over the runs of other experiments
+/// (`of`).
 void check_primary(const Manifest& manifest, const std::vector<Scale>& scales,
                    ProblemList& problems) {
   std::set<string> ids, unchecked, statements;
@@ -594,8 +595,8 @@ void check_primary(const Manifest& manifest, const std::vector<Scale>& scales,
   const auto without_value = [](const string& id) { return id.substr(0, id.find('@')); };
   for (const Scale& scale : scales) {
     for (const auto& [id, at] : scale.primary) {
-      if (ids.contains(id) || unchecked.contains(without_value(id))) continue;
-      if (statements.contains(id)) continue;  // as in older manifests
+      if (ids.contains(id) || statements.contains(id)) continue;
+      if (unchecked.contains(without_value(id))) continue;
       if (std::ranges::count(ids, id, without_value) > 0) continue;
       problems.add(at, "primary", "is not the id of a claim", printable(id),
                    format("The claims are: {}.", ids.empty() ? "none" : some_of(ids, 20)));

@@ -82,6 +82,12 @@ double overlap_limit(const Store& store, const Stage& stage, double otherwise) {
     const nlohmann::json limits =
         member_of(manifest ? manifest->info : nlohmann::json(), "max_overlap_diameters");
     const nlohmann::json stated = member_of(limits, m.place.scale.c_str());
+    if (!stated.is_null() && !stated.is_number()) {
+      throw StoreDamaged(fmt::format(
+          "manifest {:.12}: its recorded overlap limit is not a number; `shearcell verify` reports "
+          "all damage",
+          m.place.manifest));
+    }
     limit = std::max(limit, stated.is_number() ? stated.get<double>() : otherwise);
   }
   return limit;

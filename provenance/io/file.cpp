@@ -183,8 +183,8 @@ void NewFile::add(std::string_view text) {
 TemporaryFolder::TemporaryFolder(const std::string& prefix) {
   const bool named = fs::path(prefix).is_absolute();
   const char* set = std::getenv("TMPDIR");
-  const fs::path whole =
-      fs::path(set != nullptr ? set : "/tmp") / (prefix + std::to_string(getpid()) + "-XXXXXX");
+  const fs::path whole = fs::path(set != nullptr && *set != '\0' ? set : "/tmp") /
+                         (prefix + std::to_string(getpid()) + "-XXXXXX");
   remove_leftovers(whole.parent_path());
   std::string pattern = whole;
   if (mkdtemp(pattern.data()) == nullptr) {

@@ -146,6 +146,15 @@ TEST_F(CommandLine, MakesAllFigures) {
   EXPECT_EQ(json({"show", "S2", "--json"}).at("figure"), "S2");
 }
 
+// What `plan` cannot know: the values of a computed figure's claims.
+TEST_F(CommandLine, NotesAPrimaryClaimThatNoVerdictHas) {
+  const std::string none = "C.critical_size@amplitude_rad=0.9";
+  std::string text = tiny_manifest("", "primary: [" + none + "]\n");
+  text.replace(text.find("[S2]"), 4, "[C]");
+  campaign(text);
+  expect(0, {"figures", "C", "--out", "all"}, {"primary: no verdict has the id " + none});
+}
+
 TEST_F(CommandLine, PlansTheDragExperimentAtEveryScale) {
   struct Expected {
     const char* scale;
