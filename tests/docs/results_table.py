@@ -40,8 +40,8 @@ HEADLINES = [
     ("C", "C.critical_size@amplitude_rad=0.0833",
      "critical size [grains], A = 0.0833: as many crystallites of this size grow as shrink", "about 16"),
     ("committor", "committor.size@amplitude_rad=0.0833",
-     "critical size [grains], A = 0.0833: a crystallite of this size grows in half of the copies of a state",
-     "16 by the first definition", "another observable"),
+     "critical size [grains], A = 0.0833: of runs that start from copies of one state, a crystallite of this size grows in half",
+     "16, by the definition in the row above", "another observable"),
     ("S7", "S7.inner", "share of nuclei in the inner half of the width minus the share in the outer half", "0"),
     ("S7", "S7.top", "share of nuclei in the upper third of the height minus the share in the lower third", "over 0.2"),
 ]
@@ -88,7 +88,7 @@ def measured(claim):
     width = min(abs(end - value) for end in ends)
     # The last digit is the first digit of half the way to the nearer end.
     decimals = 3 if width == 0 else max(0, -math.floor(math.log10(width / 2)))
-    level = f"; {100 * claim['level']:.1f} %" if claim.get("level", 0.9) != 0.9 else ""
+    level = f"; {100 * claim['level']:.1f} % interval" if claim.get("level", 0.9) != 0.9 else ""
     return f"{value:.{decimals}f}{unit} ({ends[0]:.{decimals}f} to {ends[1]:.{decimals}f}{level})"
 
 
