@@ -190,10 +190,11 @@ Verdict at_looks(const ClaimSpec& claim, Claim stated, const ClaimSides& sides,
     if (looks.size() > 1 && verdict.estimate && std::isfinite(verdict.spread)) {
       const auto power = power_of(stated, *verdict.estimate, verdict.spread, verdict.groups, looks);
       const LookPower& there = power[static_cast<std::size_t>(next - looks.begin())];
+      verdict.power = there.as_claimed + there.against;
       add_note(verdict.note,
                fmt::format("if this estimate is the true value, the claim is decided at or "
                            "before that look with probability {:.2f}",
-                           there.as_claimed + there.against));
+                           *verdict.power));
     }
   }
   if (!frame.looks.empty()) verdict.looks = looks, verdict.look = taken;

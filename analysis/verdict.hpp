@@ -66,6 +66,9 @@ struct Verdict {
   std::size_t groups = 1;                  ///< Estimate::groups
   std::vector<std::size_t> looks = {};     ///< numbers of seeds at the planned interim analyses
   std::size_t look = 0;                    ///< number of seeds at the last look; 0: no look yet
+  /// Probability that the claim is decided at or before the next look, if `estimate` is the true
+  /// value. Empty if the claim is decided, or if only one look is planned.
+  std::optional<double> power = {};
   std::string note;      ///< how the runs were compared, and which runs are missing
   bool primary = false;  ///< the runs were made to decide this claim
   Table entered = {};    ///< rows with the numbers that the verdict uses

@@ -9,12 +9,15 @@
 #include <optional>
 #include <set>
 
+#include "analysis/error.hpp"
 #include "core/machine.hpp"
 #include "experiments/cli/command.hpp"
+#include "experiments/figures/draw.hpp"
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/runner/lammps/lammps_run.hpp"
 #include "experiments/runner/outlook.hpp"
 #include "experiments/runner/registered.hpp"
+#include "provenance/errors.hpp"
 #include "provenance/words.hpp"
 
 namespace shearcell::cli {
@@ -106,13 +109,35 @@ std::vector<std::string> notes_of(const std::vector<Plan>& plans, const std::vec
   return notes;
 }
 
-// For each experiment, adds a note on the work that the next look (interim analysis) needs. As in
-// verdicts, runs that failed or cannot start count as ended.
-void note_looks(const std::vector<Plan>& plans, const std::vector<Line>& lines,
+// The undecided claims of the experiment and the chance that the next look decides each of them,
+// such as "S2.phi 0.93". Uses the cached measures of the runs that have ended.
+std::vector<std::string> powers_of(const Store& store, const Plan& plan) {
+  FigureOptions options;
+  options.only_cached = true;
+  options.runs.scales = {scale_name(plan.scale)};
+  std::vector<std::string> powers;
+  for (const WantedFigure& wanted : wanted_figures(store, {}, {plan.manifest.experiment}).figures) {
+    if (wanted.figure.claims.empty()) continue;
+    try {
+      for (const Verdict& verdict : compute_figure(store, wanted, options).verdicts) {
+        if (verdict.power) powers.push_back(fmt::format("{} {:.2f}", verdict.id, *verdict.power));
+      }
+    } catch (const UsageError&) {  // `figures` will refuse this figure and say why
+    } catch (const AnalysisError&) {
+    }
+  }
+  return powers;
+}
+
+// For each experiment, adds a note on the work that the next look (interim analysis) needs, and on
+// the chance that it decides the claims. As in verdicts, runs that failed or cannot start count as
+// ended.
+void note_looks(const std::vector<Plan>& plans, const std::vector<Line>& lines, const Store* store,
                 const std::vector<Stage>& known, std::vector<std::string>& notes) {
-  std::set<std::string> failed;  // ids
+  std::set<std::string> failed, recorded;  // ids of stages; names of experiments
   for (const Stage& stage : known) {
     if (stage.state == StageState::failed) failed.insert(stage.id);
+    for (const Membership& m : stage.memberships) recorded.insert(m.place.experiment);
   }
   for (const Plan& plan : plans) {
     for (const Scale& scale : scales_of(plan.manifest)) {
@@ -133,11 +158,19 @@ void note_looks(const std::vector<Plan>& plans, const std::vector<Line>& lines,
       const auto next =
           std::ranges::find_if(scale.looks, [&](std::uint64_t look) { return left_at(look) > 0; });
       if (next == scale.looks.end()) continue;
+      const std::vector<std::string> powers = recorded.contains(plan.manifest.experiment)
+                                                  ? powers_of(*store, plan)
+                                                  : std::vector<std::string>();
       notes.push_back(fmt::format(
           "{}: the next planned look (interim analysis) uses {} of {} and needs {:.3g} more "
-          "particle-steps. The notes of a verdict give the chance that this look decides the claim",
+          "particle-steps. {}",
           plan.manifest.experiment, *next, counted(scale.seeds.values.size(), "seed"),
-          left_at(*next)));
+          left_at(*next),
+          powers.empty()
+              ? "The chance that it decides a claim is known after `figures` has measured some runs"
+              : fmt::format("If the present estimates are the true values, each claim is decided "
+                            "at or before this look with probability: {}",
+                            fmt::join(powers, ", "))));
     }
   }
 }
@@ -275,7 +308,7 @@ void plan(const PlanOptions& options, Context& context) {
     notes.push_back(fmt::format("too little disk space: only {} are free in {}", format_bytes(free),
                                 place.string()));
   }
-  note_looks(plans, lines, runs, notes);
+  note_looks(plans, lines, store ? &*store : nullptr, runs, notes);
   if (longer > 0) {
     notes.push_back(fmt::format(
         "`run` also continues {} to the larger number of cycles that an earlier command requested",

@@ -118,7 +118,8 @@ class Measuring {
       task.keys = std::span(keys_).subspan(first, providers_.size());
       take(task, std::span(found).subspan(first, providers_.size()));
       const auto wanted = std::span(task.results).first(wanted_);
-      if (std::ranges::any_of(wanted, &json::is_null)) todo.push_back(&task);
+      const bool is_missing = std::ranges::any_of(wanted, &json::is_null);
+      if (is_missing && !options_.only_cached) todo.push_back(&task);
     }
     return todo;
   }

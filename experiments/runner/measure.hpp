@@ -34,6 +34,7 @@ struct MeasureOptions {
   /// First and last cycle. Measures that need a simulation (ComputedFrom::simulation) are computed
   /// only for checkpoints in this range; if empty, for all checkpoints.
   std::optional<std::array<std::uint64_t, 2>> simulated = {};
+  bool only_cached = false;  ///< read no checkpoint; results that are not cached are missing
 };
 
 struct MeasureOutcome {

@@ -285,6 +285,19 @@ TEST_F(Commands, PlanSaysWhatTheNextLookTakes) {
          {"tiny: the next planned look (interim analysis) uses 4 of 4 seeds "});
 }
 
+/// Before `figures` has measured runs, nothing is known about them, and `plan` reads no checkpoint.
+TEST_F(Commands, PlanPrintsThePowerOfTheNextLook) {
+  write("m.yaml", tiny_manifest("",
+                                "seeds: 6\nlooks: [4, 6]\n"
+                                "claims: [{id: tiny.overlap, compare: mean_overlap_d, cycles: [1, "
+                                "1], published: {value: 0.001, source: none}, margin: 1e-6}]\n"));
+  expect(0, {"run", "m.yaml", "--cycles", "1", "--seeds", "3", "-q"});
+  expect(0, {"plan", "m.yaml", "--cycles", "1"}, {"is known after `figures` has measured"});
+  expect(0, {"figures", "tiny", "--out", path("out")}, {"with probability 1.00"});
+  expect(0, {"plan", "m.yaml", "--cycles", "1"},
+         {"uses 4 of 6 seeds ", "at or before this look with probability: tiny.overlap 1.00"});
+}
+
 /// A manifest may start from runs of one that is named after it.
 TEST_F(Commands, PlanReadsManifestsInTheOrderOfTheirStarts) {
   const auto after = [](const std::string& name, const std::string& other) {
