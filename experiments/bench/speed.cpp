@@ -25,7 +25,7 @@ struct KernelTimes {
   // Every 16th step is repeated three times: the whole step, the step without walls, and the step
   // without walls and neighbours. The results of the repeated steps are written to `elsewhere`.
   double sampled = 0, whole = 0, without_walls = 0, without_neighbours = 0;
-  double blocks = 0, slots = 0;  // blocks of grains, and neighbour slots, in repeated steps
+  double blocks = 0, slots = 0;  // blocks of grains and neighbour slots, counted in repeated steps
   std::vector<double> elsewhere;
 };
 KernelTimes times;

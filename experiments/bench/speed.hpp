@@ -40,7 +40,8 @@ struct SpeedResult {
   double bytes_per_grain = 0;
   double multiplications = 0;  ///< per particle-step
   /// Rate that a kernel would reach if the multiplication units were never idle. The value for one
-  /// core is multiplied by the number of threads. No kernel with these operations can be faster.
+  /// core is multiplied by the number of threads. No kernel with this number of multiplications can
+  /// be faster.
   double limit = 0;
   std::string state_hash = {};  ///< hash after 200 steps; equal for all results of one size
 };
@@ -48,8 +49,8 @@ struct SpeedResult {
 /// Measures the speed for each size, kernel and number of threads. The cell has rough walls, the
 /// parameters of Table I and A = 0.0833. The packing is first pressed together. For N > 18200 a
 /// smaller packing is repeated along the depth; SpeedResult::grains includes all copies.
-/// Throws std::runtime_error if kernels give different states after 200 steps. Shares are measured
-/// with one thread.
+/// Throws std::runtime_error if kernels give different states after 200 steps. The shares in
+/// SpeedResult are always measured with one thread.
 std::vector<SpeedResult> measure_speed(const SpeedOptions& options);
 
 }  // namespace shearcell::bench

@@ -72,9 +72,9 @@ done
 exit "$code"
 )sh";
 
-/// Adds the command to the job. sbatch prefers options to environment variables. If an option
-/// is repeated, sbatch uses the last one. The user's options come directly after --export, before
-/// all other options, so they can replace only --export.
+/// Adds the command to the job. The user's options come directly after --export and before all
+/// other options, so they can replace only --export: sbatch uses the last of repeated options.
+/// Environment variables replace no option, because sbatch prefers options to them.
 Job complete(Job job, const JobOptions& options, const fs::path& folder, const std::string& log,
              const std::vector<std::string>& own, const std::vector<std::string>& arguments) {
   std::vector<std::string>& words = job.command;
@@ -143,7 +143,7 @@ QueuedTask task_of(const Submission& submission, std::size_t task) {
 std::vector<Share> shares_of(const std::vector<Plan>& plans, const Store* store) {
   const Rates rates(store == nullptr ? std::vector<Stage>{} : store->stages());
   std::vector<Share> shares;
-  std::map<std::string, std::size_t> places;  // stage -> index in `shares` of its packing
+  std::map<std::string, std::size_t> places;  // stage -> index of its packing in `shares`
   for (const PlannedStage& one : look_at(plans, store)) {
     const std::string &id = one.stage.id, &parent = one.stage.parent;
     const auto [place, fresh] = places.try_emplace(parent.empty() ? id : parent, shares.size());
@@ -321,7 +321,7 @@ std::map<std::string, Stage> read_task_report(const fs::path& folder) {
       record.cycle = run.at("cycle").get<double>();
     }
   } catch (const json::exception&) {
-    reported.clear();  // the report is only for information
+    reported.clear();  // an invalid report is no error: reports are only for information
   }
   return reported;
 }

@@ -25,7 +25,7 @@ namespace shearcell {
 /// settled only once.
 struct Share {
   std::vector<std::string> packings;  ///< ids of the `prepare` stages
-  std::vector<std::string> runs;      ///< ids of the unfinished stages of these packings
+  std::vector<std::string> runs;      ///< ids of the unfinished stages that start from `packings`
   double particle_steps = 0;          ///< remaining work, including the packings
   double core_seconds = 0;            ///< time on one core [s], estimated with Rates (outlook.hpp)
 };
@@ -34,9 +34,9 @@ struct Share {
 /// several plans contain is listed once. `store` may be null.
 std::vector<Share> shares_of(const std::vector<Plan>& plans, const Store* store);
 
-/// Joins the shares of packings into at most `tasks` shares, none of them empty. Takes the packings
-/// in descending core time, and gives each packing to the share with the least core time so far.
-/// The same input gives the same shares.
+/// Distributes packings over at most `tasks` shares, none of them empty. `packings`: one share for
+/// each packing. They are taken in order of descending core time, and each is added to the share
+/// that has the least core time so far. The same input gives the same shares.
 std::vector<Share> share_out(std::vector<Share> packings, std::size_t tasks);
 
 /// Options for Slurm. Empty texts leave the choice to the cluster.
@@ -88,8 +88,8 @@ struct Submission {
 Job array_job(const Submission& submission, const std::filesystem::path& store,
               const JobOptions& options);
 
-/// The merge job. When job number `array` has ended, it merges the stores of all tasks into
-/// `store`, one after the other. It ends with the last exit code that was not 0.
+/// The merge job, which starts after job number `array` has ended. Merges the stores of all tasks
+/// into `store`, one after the other. Its exit code is that of the last failed merge, or 0.
 Job merge_job(const Submission& submission, const std::filesystem::path& store,
               const JobOptions& options, const std::string& array);
 

@@ -28,7 +28,8 @@ void add_columns(const Measures& measures, ExportedState& frame) {
   }
 }
 
-// How LAMMPS continues the stage: shear with its drive, or settling with its forces, walls upright.
+// The task that continues the stage in LAMMPS. A shear keeps its scene and drive. A packing keeps
+// the scene of settling, in which the walls are upright.
 std::optional<LammpsTask> continued(const Checkpoint& c, const Stage& stage) {
   const auto kind = value_of<StageKind>(stage.kind);
   if (!kind || kind == StageKind::stiffen || c.state.position.cols() == 0) return std::nullopt;

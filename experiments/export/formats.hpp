@@ -34,9 +34,9 @@ FrameWriter extxyz_writer(const std::filesystem::path& file, LengthUnit unit);
 /// SI units. `frames`: number of frames; frames.pvd is complete after the last one.
 FrameWriter vtk_writer(const std::filesystem::path& folder, std::size_t frames);
 
-/// A folder with frame_CYCLE.data for each frame, in SI units and without measures (lammps_data).
-/// The title line of this file gives the planes of the cell. If ExportedState::continued is set,
-/// the folder also gets in.frame_CYCLE, a script that continues the run in LAMMPS (lammps_script).
+/// A folder with frame_CYCLE.data for each frame, in SI units and without measures (lammps_data()).
+/// The title line of each .data file gives the planes of the cell. If ExportedState::continued is
+/// set, the folder also gets in.frame_CYCLE (lammps_script()), which continues the run in LAMMPS.
 FrameWriter lammps_writer(const std::filesystem::path& folder);
 
 /// A folder with contacts_CYCLE.csv for each frame, with a row for each contact. Particles are
@@ -46,8 +46,8 @@ FrameWriter lammps_writer(const std::filesystem::path& folder);
 FrameWriter contacts_writer(const std::filesystem::path& folder);
 
 /// Writes FOLDER/run.json for formats that are folders: {"run", ..., "parameters": {...}, "frames":
-/// [{"cycle", "checkpoint", scalars}]}. `frames`: as for vtk_writer(); the file is written with the
-/// last frame.
+/// [{"cycle", "checkpoint", scalars}]}. `frames`: as for vtk_writer(). The
+/// file is written when the last frame is written.
 FrameWriter facts_writer(const std::filesystem::path& folder, std::size_t frames);
 
 }  // namespace shearcell

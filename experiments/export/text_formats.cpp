@@ -17,7 +17,8 @@ namespace shearcell {
 namespace {
 
 /// Whether ASE or OVITO may read a quoted text as a number, a logical value or JSON. Both programs
-/// ignore the quotes. ASE splits a text at spaces and commas, so only its first item is tested.
+/// ignore the quotes. ASE splits the text at spaces and commas, and reads it as a value only if the
+/// first item is one, so only the first item is tested.
 bool looks_like_a_value(std::string_view text) {
   std::string word = lower(text.substr(0, text.find_first_of(" ,")));
   const auto of_a_name = [](char c) { return c >= 'a' && c <= 'z' && c != 'd' && c != 'e'; };
@@ -129,7 +130,7 @@ FrameWriter facts_writer(const std::filesystem::path& folder, std::size_t count)
     for (const auto& [name, value] : f.scalars) frame[name] = value;  // NaN as null
     frames->push_back(std::move(frame));
     if (frames->size() < count) return;
-    Json all = {{"units", "SI: m, kg, s; others are in the names"}};
+    Json all = {{"units", "SI: m, kg, s. Values in other units have the unit in their names"}};
     for (const auto& [key, value] : f.run) all[key] = value;
     for (const auto& [key, value] : f.parameters) all["parameters"][key] = value;
     all["frames"] = *frames;

@@ -62,9 +62,10 @@ void check_stage(const Stage& stage) {
   for (const Membership& m : stage.memberships) check_place(m.place, inputs, stage.resolved);
 }
 
-/// Steps of the parent at which the stage may have started. A packing must have been completed.
-/// Each completed attempt gives two steps, which can differ after a merge: the step of its last
-/// checkpoint, and the largest step of the packing so far.
+/// Steps of the parent at which the stage may have started. If the parent is a packing, each
+/// completed attempt gives two steps, which can differ after a merge: the step of the attempt's
+/// last checkpoint, and the largest step that the packing had reached by then. If the parent is not
+/// a packing, the only step is that of starting_state().
 std::set<std::uint64_t> starting_steps(const Store& store, const Stage& stage) {
   std::set<std::uint64_t> steps;
   if (store.stage(stage.parent).kind != name_of(StageKind::prepare)) {
@@ -86,8 +87,9 @@ std::set<std::uint64_t> starting_steps(const Store& store, const Stage& stage) {
   return steps;
 }
 
-/// Throws StoreDamaged if the stage started from a wrong checkpoint of its parent. After a merge,
-/// accepts a checkpoint without a record: merge() keeps only one file of a state.
+/// Throws StoreDamaged if the stage started from a wrong checkpoint of its parent. If the log has a
+/// merge, accepts a checkpoint that is not in the log: merge() does not copy a checkpoint if the
+/// store already has the same state in a file with other bytes.
 void check_beginning(const Store& store, const Stage& stage) {
   if (stage.parent.empty()) return;
   const std::set<std::uint64_t> steps = starting_steps(store, stage);
@@ -101,8 +103,9 @@ void check_beginning(const Store& store, const Stage& stage) {
       continue;
     }
     throw StoreDamaged(fmt::format(
-        "event {} started this run from the wrong state: checkpoint {:.12} is not the required "
-        "state of run {:.12}; do not use the results, and compute this run in a new store",
+        "event {}: this run started from the wrong state: checkpoint {:.12} is not the required "
+        "state of the parent run {:.12}; do not use the results, and compute this run in a new "
+        "store",
         event.seq, *from, stage.parent));
   }
 }
@@ -251,7 +254,7 @@ std::vector<CheckpointRecord> sample(std::vector<CheckpointRecord> records, std:
 
 std::uint64_t seed_of(const Head& head) {
   const std::string digits = head.hash.substr(0, 12);
-  std::uint64_t seed = 0;  // stays 0 if the log is damaged and the hash is not hexadecimal
+  std::uint64_t seed = 0;  // stays 0 if the hash in a damaged log is not hexadecimal
   std::from_chars(digits.data(), digits.data() + digits.size(), seed, 16);
   return seed;
 }
@@ -308,7 +311,8 @@ std::vector<MergeReport> merge_stores(Store& store,
                                       std::vector<Finding>* refused) {
   constexpr std::size_t kSampled = 3;
   std::vector<MergeReport> reports = store.merge(sources, runs);
-  const std::uint64_t seed = seed_of(store.head());  // a forged source cannot predict the sample
+  // The sample depends on the store's head, so the author of a forged source cannot predict it.
+  const std::uint64_t seed = seed_of(store.head());
   for (const std::filesystem::path& source : sources) {
     MeasureCheck check = check_measures(store, source, kSampled, seed);
     if (check.findings.empty()) {

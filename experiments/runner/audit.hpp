@@ -14,13 +14,14 @@
 
 namespace shearcell {
 
-/// Returns an error for each stage that started from a wrong state, whose id is not the hash of its
-/// parameters, or whose record (kind, parent, number of grains, seed, swept values, variant) does
-/// not fit these. Returns a note for each stage with unreadable parameters or a missing parent.
+/// Returns an error for each stage with one of these faults: it started from a wrong state; its id
+/// is not the hash of its parameters; its recorded kind, parent, number of grains, seed, swept
+/// values or variant does not fit its parameters. Returns a note for each stage with unreadable
+/// parameters or a missing parent.
 std::vector<Finding> check_runs(const Store& store);
 
-/// All recorded and pruned checkpoints that this program can recompute bit for bit. This excludes
-/// checkpoints from LAMMPS or from a program with another bits_version. Order: stage, then step.
+/// All checkpoints, including pruned ones, that this program can recompute bit for bit. Checkpoints
+/// from LAMMPS or from a program with another bits_version are excluded. Order: stage, then step.
 std::vector<CheckpointRecord> replayable(const Store& store);
 
 /// A random sample of `count` different records, or all records if there are fewer. Equal seeds
@@ -46,8 +47,8 @@ MeasureCheck check_measures(const Store& store, const std::filesystem::path& fol
                             std::size_t count, std::uint64_t seed);
 
 /// Calls Store::merge(). Then checks a sample of three checkpoints of each source with
-/// check_measures(), and copies the cached measures of each source without an error. Appends the
-/// errors, and notes on measures that could not be copied, to `refused`.
+/// check_measures(). If a source has no errors, copies its cached measures. Appends the errors, and
+/// notes on measures that could not be copied, to `refused`.
 std::vector<MergeReport> merge_stores(Store& store,
                                       const std::vector<std::filesystem::path>& sources,
                                       const std::set<std::string>& runs = {},

@@ -38,7 +38,8 @@ enum class JobState { waiting, running, done, ended };
 
 // Time between two checks of a stage that another process computes.
 constexpr std::chrono::milliseconds kCheckInterval{500};
-// A stage is blocked after this number of failed starts, if no process is computing it.
+// If more attempts than this ended with StageOutcome::lost, but no process is computing the stage,
+// the stage is blocked.
 constexpr int kMostLosses = 20;
 
 // --- Progress on standard error ---
@@ -151,8 +152,7 @@ class Campaign {
  private:
   struct Job : StageJob {
     JobState state = JobState::waiting;
-    // When to check next whether another process, which was computing the stage, is done. Empty if
-    // no other process was.
+    // Set if another process was computing the stage at the last attempt: when to try again.
     std::optional<Clock::time_point> check_at = {};
     int losses = 0;  // number of attempts that ended with StageOutcome::lost
   };
@@ -229,8 +229,8 @@ class Campaign {
     if (holders.empty()) return;  // the other process has just ended
     shown_held_ = held;
     progress_.say(
-        fmt::format("waiting for {} that another process is computing ({}). This process takes "
-                    "over a stage if the other process ends or is silent for {} s",
+        fmt::format("waiting for {} that another process is computing ({}). If that process "
+                    "ends or is silent for {} s, its stages are continued here",
                     counted(held, "stage"), fmt::join(holders, "; "), kLongestLeaseMs / 1000),
         true);
   }

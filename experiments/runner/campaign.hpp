@@ -47,10 +47,10 @@ std::vector<StageJob> declare(Store& store, const Plan& plan);
 std::vector<StageJob> stages_to_resume(Store& store, const std::vector<std::string>& prefixes);
 
 /// Computes every job that is not done. A failure stops only the stages that depend on the failed
-/// stage. Waits for a stage that another process computes. If that process ends or its lease
-/// expires before the stage is done, continues the stage. Shows progress on standard error unless
-/// `quiet`. Calls `when_done` with the id of each stage that this call completed, from several
-/// threads at once. An exception from `when_done` ends the campaign.
+/// stage. Waits for a stage that another process computes. Continues the stage if that process ends
+/// before the stage is done, or if the lease of that process expires. Shows progress on standard
+/// error unless `quiet`. Calls `when_done` with the id of each stage that the campaign completed.
+/// Several threads may call `when_done` at the same time. If it throws, the campaign ends.
 CampaignResult run_campaign(Store& store, const std::vector<StageJob>& jobs, std::size_t workers,
                             const Parallel& parallel = {}, bool quiet = false,
                             std::function<void(const std::string& stage)> when_done = {});

@@ -89,8 +89,8 @@ class Measuring {
   }
 
  private:
-  /// A checkpoint that is measured once. Each provider has one key and one result; the result is
-  /// null until it is known.
+  /// A checkpoint to measure. Entries of checkpoints_ with equal checkpoint and `every` share a
+  /// task. `keys` and `results` have one element per provider. A result is null until it is known.
   struct Task : ToMeasure {
     std::span<const DerivedKey> keys = {};  // in keys_
     std::vector<json> results = {};
@@ -146,7 +146,8 @@ class Measuring {
       }
       const CheckpointRecord* other = sources_.earlier(record, *providers_[p], task.every);
       if (other != nullptr) outcome_.earlier.insert(other->sha256);
-      // If the log has digests of other results only, the checkpoint must not be pruned.
+      // If the log has digests for this checkpoint, but none for this result, the cached result is
+      // used only if the checkpoint is not pruned.
       if (!found[p] ||
           !sources_.is_as_pruned(record, {task.keys[p], *found[p]}).value_or(!is_pruned)) {
         continue;
@@ -209,7 +210,7 @@ class Measuring {
   std::vector<const Provider*> providers_;  // the requested providers, then MeasureOptions::also
   std::size_t wanted_ = 0;                  // number of requested providers (without `also`)
   std::vector<Task> tasks_;                 // the results of a task are written by one thread
-  std::vector<DerivedKey> keys_;            // of all tasks, one for each provider
+  std::vector<DerivedKey> keys_;            // one for each task and provider, by task
   std::vector<std::size_t> place_;          // for each checkpoint, its index in tasks_
   std::mutex mutex_;                        // guards the members below while threads run
   DerivedCache cache_;
@@ -295,7 +296,7 @@ void MeasureSources::read_run(const std::string& run) {
     auto pruned = std::get<events::CheckpointPruned>(events::decode(event));
     if (pruned.measures.empty()) continue;
     Digests& all = entry->second.digests[pruned.checkpoint.sha256];
-    pruned.measures.merge(all);  // if both events have a digest, keeps the later one
+    pruned.measures.merge(all);  // of two digests of one result, keeps the later one
     all = std::move(pruned.measures);
   }
   if (!entry->second.facts.drive) return;

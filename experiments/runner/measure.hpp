@@ -41,14 +41,15 @@ struct MeasureOutcome {
   std::set<std::string> damage;    ///< messages on unreadable checkpoints or measures
   std::set<std::string> pruned;    ///< a message for each pruned checkpoint
   std::set<std::string> measured;  ///< SHA-256 of the checkpoints analysed in this call
-  std::set<std::string> earlier;   ///< SHA-256 of the earlier checkpoints that measures used
+  std::set<std::string> earlier;   ///< SHA-256 of the earlier checkpoints that measures need
   std::string cache_trouble;       ///< why results cannot be cached; "" if they can
 
   MeasureOutcome& operator+=(const MeasureOutcome& more);
 };
 
-/// A checkpoint to measure, for an experiment whose checkpoints are `every` cycles apart. An
-/// earlier checkpoint at a whole cycle is used only if this cycle is a multiple of `every`.
+/// A checkpoint to measure, for an experiment whose checkpoints are `every` cycles apart. Some
+/// measures also need an earlier checkpoint of the run. If the earlier checkpoint is at a whole
+/// cycle, it is used only if this cycle is a multiple of `every`.
 struct ToMeasure {
   CheckpointMeasures* checkpoint;
   std::uint64_t every = 1;
@@ -58,14 +59,14 @@ struct ToMeasure {
 /// only the log (ComputedFrom::record). Sets `lacking` to the providers that gave no result.
 /// Results are cached under the checkpoint's recorded SHA-256. If all results of a checkpoint are
 /// cached, its file is not read and may be missing. Throws StoreDamaged, with a remedy, if a cached
-/// result is invalid, or if a checkpoint is pruned and the cache is not ours or damaged;
-/// MachineError if the machine cannot read the cached measures of a pruned checkpoint.
+/// result is invalid. For a pruned checkpoint, also throws StoreDamaged if the cache is damaged or
+/// belongs to another program, and MachineError if the machine cannot read the cache.
 MeasureOutcome measure_checkpoints(const Store& store, std::span<const ToMeasure> checkpoints,
                                    std::span<const std::string> providers,
                                    const MeasureOptions& options);
 
-/// Analyses a stored checkpoint. Throws StoreDamaged, with the checkpoint and the run, if the state
-/// cannot be analysed. Such a file is damaged, since this program never records such a state.
+/// Analyses a stored checkpoint. If the state cannot be analysed, throws StoreDamaged, with the
+/// checkpoint and the run: the file must be damaged, since this program records no such state.
 Analysis analyse_stored(const CheckpointRecord& record, const Checkpoint& checkpoint);
 
 /// Calls work(0) .. work(count - 1), at most `workers` at once. Collects the messages of

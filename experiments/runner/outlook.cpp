@@ -64,7 +64,7 @@ std::optional<double> recorded_reach(const Stage& stage, const Until& until, dou
 
 /// Where a stage ends if only one Ask (the request of one experiment) is considered.
 struct End {
-  double cycle = 0;                             ///< Ask::target_cycles; less if `until` ends it
+  double cycle = 0;                             ///< Ask::target_cycles, or less because of `until`
   std::optional<double> reached = {};           ///< the cycle at which `until` was reached
   const CheckpointRecord* undecided = nullptr;  ///< first unmeasured checkpoint
 };
@@ -79,7 +79,8 @@ End end_by(const Stage& stage, const Ask& ask, std::span<const CheckpointRecord>
     if (std::fmod(one.cycle, every) != 0) continue;
     const auto known = measures.find(one.sha256);
     if (known == measures.end() || !known->second.numbers.contains(until->measure)) {
-      // The recorded end is not valid for a request of more cycles than the stage: measure first.
+      // A recorded end is valid only for requests of at most stage.target_cycles cycles. For more
+      // cycles, the checkpoint must be measured.
       if (ask.target_cycles <= stage.target_cycles) {
         end.reached = recorded_reach(stage, *until, every);
       }
@@ -99,7 +100,8 @@ End end_by(const Stage& stage, const Ask& ask, std::span<const CheckpointRecord>
   return end;
 }
 
-/// Whether the stage is completed and long enough for `ask`, as a recorded request shows.
+/// Whether the stage is completed, and is long enough for `ask` because it fulfils a recorded
+/// request that has the same `until` and cannot end earlier than `ask`.
 bool is_covered(const Stage& stage, const Ask& ask) {
   return stage.state == StageState::completed && !ask.until.is_null() &&
          std::ranges::any_of(asks_of(stage.memberships), [&](const Ask& recorded) {
@@ -166,8 +168,8 @@ void find_left(const Stage& stage, const Drive& motion, EngineKind engine,
   look.checkpoints = asked.to_come;
   if (engine == EngineKind::shearcell) look.missing = std::move(asked.missing);
   double steps = std::max(0.0, length - now);
-  // Steps from the last checkpoint before `first` whose file exists, or else from the beginning of
-  // the stage, to `last`.
+  // Number of steps that a replay computes to reach step `last`. The replay starts from the last
+  // checkpoint before `first` that has a file, or from step 0 if there is no such checkpoint.
   const auto steps_again = [&](std::uint64_t first, std::uint64_t last) {
     std::uint64_t from = 0;
     for (const CheckpointRecord& record : checkpoints) {
@@ -297,8 +299,8 @@ namespace {
   throw StoreDamaged(why);
 }
 
-/// Analyses the next checkpoints at whole cycles, beginning with `first`, at most one per worker.
-/// Adds to `measures` the measures that the `until` conditions of these requests use.
+/// Analyses the next checkpoints at whole cycles: at most one per worker, beginning with `first`.
+/// Adds to `measures` the measures that the `until` conditions in `asks` use.
 void measure_from(const Store& store, const Stage& stage, std::span<const Ask> asks,
                   const CheckpointRecord& first, std::span<const CheckpointRecord> checkpoints,
                   KnownMeasures& measures, const MeasureOptions& options) {
@@ -334,8 +336,8 @@ void measure_from(const Store& store, const Stage& stage, std::span<const Ask> a
   }
 }
 
-/// The largest number of cycles that a request asks for and the stage has reached; 0 if there is
-/// none. Ignores requests with this `until`, and requests recorded after the stage ended.
+/// The largest requested number of cycles that the stage has reached; 0 if it has reached none of
+/// the requests. Ignores requests with this `until`, and requests recorded after the stage ended.
 double longest_length(const Stage& stage, const json& ended, const json& until) {
   const json known = member_of(ended, "memberships");
   std::size_t left = known.is_number_unsigned() ? known.get<std::size_t>() : 0;

@@ -77,7 +77,8 @@ std::vector<CheckpointCadence> cadences_of(const Stage& stage, std::span<const A
 /// experiment are excluded, so that figures and tables do not depend on them.
 struct AskedCheckpoints {
   std::vector<CheckpointRecord> made = {};
-  /// Steps that the stage has passed without a requested checkpoint, ascending; at most a million.
+  /// Steps, ascending, at which a checkpoint is requested, but which the stage has passed without
+  /// recording one; at most a million steps.
   std::vector<std::uint64_t> missing = {};
   double to_come = 0;  ///< number of checkpoints not reached yet; an estimate if above 10,000
 };
@@ -97,7 +98,7 @@ std::uint64_t checkpoint_cadence(std::span<const Ask> asks);
 /// store has recorded that it was reached. Sets Outlook::unreadable if a request cannot be read.
 Outlook look_at(const Store& store, const Stage& stage);
 
-/// A stage that runs of one or more plans need, with what the store records about this stage.
+/// A stage needed by the runs of one or more plans, with what the store records about this stage.
 struct PlannedStage {
   const PlannedRun* run = nullptr;  ///< the first run with this stage
   Stage stage = {};
@@ -122,14 +123,15 @@ Outlook measured_outlook(const Store& store, const Stage& stage, std::span<const
 double end_for(const Store& store, const Stage& stage, const Ask& ask,
                const MeasureOptions& options);
 
-/// The recorded and pruned checkpoints that `asks` request, for each request up to end_for().
+/// The checkpoints that `asks` request, including pruned ones. Each request counts only up to its
+/// own end_for().
 std::vector<CheckpointRecord> checkpoints_for(const Store& store, const Stage& stage,
                                               std::span<const Ask> asks,
                                               const MeasureOptions& options = {});
 
 /// The recorded Outlook::ended if an `until` completed the stage before `target_cycles`; otherwise
-/// null. If another experiment made the stage continue beyond this `until`, the number of cycles
-/// that this experiment asked for is added as "cycles_asked".
+/// null. If another experiment made the stage continue beyond this `until`, "cycles_asked" is
+/// added: the number of cycles that the other experiment asked for.
 nlohmann::json end_of(const Stage& stage);
 
 /// end_of() as text: "crystalline_percent >= 10 at cycle 25 and 15 more cycles"; "" for null.
@@ -153,7 +155,7 @@ double checkpoint_bytes(const Geometry& shape);
 
 struct Rate {
   double particle_steps_per_second;  ///< of one core
-  bool measured;                     ///< whether the rate was measured in these runs
+  bool measured;                     ///< whether the rate is a mean of recorded runs
 };
 
 /// Mean rates of recorded runs [particle-steps/s].
@@ -181,7 +183,7 @@ struct Work {
   double longest_seconds = 0;                ///< largest value of `chain` [s]
   double rate = 0;                           ///< mean particle-steps/s of one core
   bool measured = true;                      ///< false if any rate was assumed
-  std::map<std::string, double> chain = {};  ///< time [s] of a stage and its parents, by stage id
+  std::map<std::string, double> chain = {};  ///< by stage id: total time [s] with all parents
 
   /// Adds a stage; its parent must have been added before.
   void add(const Stage& stage, const Outlook& look, const Rates& rates);

@@ -118,7 +118,7 @@ ReadyStage ready_stage(const Store& store, Stage stage) {
 struct Beginning {
   Cell cell;
   State state;
-  /// The checkpoint that holds the state: of this stage, or of its parent. Empty for new grains.
+  /// The checkpoint with this state, recorded by the stage or its parent. Empty for new grains.
   std::optional<CheckpointRecord> record = {};
 
   const CheckpointRecord* from(const std::string& stage) const {
@@ -140,9 +140,9 @@ Beginning beginning_after_parent(Store& store, const ReadyStage& plan,
                   plan.stage.parent, plan.stage.id, p.start_cycle);
   if (!record) {
     throw NotFound(what +
-                   " was never recorded; `shearcell resume` first settles an unfinished "
-                   "packing. For another run, name a recorded cycle, or request more "
-                   "checkpoints");
+                   " was never recorded. If the parent is a packing, settle it with "
+                   "`shearcell resume`. If it is a sheared run, start from a recorded cycle, or "
+                   "request more checkpoints");
   }
   restore_if_pruned(store, *record, options);
   auto checkpoint = store.load_if_readable(*record);
@@ -228,8 +228,9 @@ class Engine {
   /// ProgramError if LAMMPS failed.
   virtual StageProgress advance() = 0;
 
-  /// Stops before the end of the stage. Afterwards the caller must record a checkpoint. Exception:
-  /// if LAMMPS does not answer, the steps since the last checkpoint are lost.
+  /// Stops before the end of the stage. Sets `checkpoint_due`, so that the caller records the last
+  /// state. If LAMMPS does not answer, `checkpoint_due` is false, and the steps since the last
+  /// checkpoint are lost.
   virtual StageProgress halt() = 0;
 
   /// A checkpoint of the newest state (LAMMPS: of its last frame). Throws NumericalFailure.
@@ -510,8 +511,8 @@ class StageAttempt {
     return StageOutcome::interrupted;
   }
 
-  // Completes the stage if the `until` of each experiment that uses it has ended it, including
-  // experiments that were declared during the computation.
+  // Completes the stage and returns true if an `until` has ended the stage (Outlook::ended).
+  // Considers all experiments that use the stage, also those declared during the computation.
   bool ends_early() {
     const Stage now = store_.stage(id());
     const std::vector<Ask> asks = asks_of(now.memberships);
@@ -643,7 +644,8 @@ std::optional<Checkpoint> compute_again(Store& store, Replay& replay, const Stag
   return std::nullopt;
 }
 
-/// Compares `found` with the recorded state. If they are equal, compares other recorded numbers.
+/// Compares `found` with the recorded state. If the states are equal, also compares the cycle, the
+/// time, the tilt and the observables.
 void compare_again(const Store& store, const Checkpoint& found, Replay& replay) {
   const CheckpointRecord& record = replay.record;
   const std::string hash = state_hash(found);
@@ -784,8 +786,8 @@ std::optional<std::string> why_not_again(const Store& store, const CheckpointRec
   const Attempt& by = run.attempts[*made->attempt];
   if (by.bits_version == bits_version) return std::nullopt;
   return fmt::format(
-      "shearcell {} computed this state with bits version {}, and this program has bits version "
-      "{}, whose results differ in the last bits",
+      "shearcell {} computed this state with bits version {}, but this program has bits version "
+      "{}; the results of the two versions differ in the last bits",
       maker_of(by.host).version, by.bits_version, bits_version);
 }
 

@@ -52,9 +52,9 @@ StageOutcome run_stage(Store& store, const std::string& id, const StageOptions& 
 /// Whether the stage is done (Outlook::done) and its last checkpoint can be read or was pruned.
 bool is_done(const Store& store, const Stage& stage);
 
-/// The checkpoint of the parent from which the stage starts, even if its file is pruned: the last
-/// one of a settled packing, or the one of another shear at `start_cycle`. Empty if it was never
-/// recorded, or if the packing has not settled.
+/// The checkpoint of the parent from which the stage starts, even if its file is pruned. If the
+/// parent is a packing: its last checkpoint. If the parent is a shear: its checkpoint at cycle
+/// `start_cycle`. Empty if this checkpoint was never recorded, or if the packing has not settled.
 std::optional<CheckpointRecord> starting_state(const Store& store, const Stage& stage,
                                                const Parameters& parameters);
 
@@ -62,8 +62,9 @@ std::optional<CheckpointRecord> starting_state(const Store& store, const Stage& 
 struct Divergence {
   std::uint64_t same_step = 0;   ///< last step at which the states are known to agree
   std::uint64_t first_step = 0;  ///< first step at which the states are known to differ
-  /// What differs: "position", "velocity", "wall_height" or "wall_velocity" or, if the states are
-  /// equal, "cycle", "time_s", "theta", the name of an observable, or "file". "" if unknown.
+  /// What differs in the states: "position", "velocity", "wall_height" or "wall_velocity". If the
+  /// states are equal: "cycle", "time_s", "theta", the name of an observable, or "file". "" if
+  /// unknown.
   std::string field;
   std::int64_t grain = -1;
   std::uint64_t ulp = 0;  ///< largest difference in `field` [units in the last place]
@@ -91,9 +92,9 @@ std::optional<std::string> why_not_again(const Store& store, const CheckpointRec
 /// replay would have to start from a state of the parent that was pruned.
 Replay verify_by_replay(Store& store, const CheckpointRecord& record, std::size_t threads = 1);
 
-/// Like verify_by_replay(), but restores the file of a pruned, missing or damaged checkpoint with
-/// the same SHA-256. If the replay starts from a pruned state of the parent, restores the file of
-/// this state first. If the bytes differ, records ReplayDiverged and writes no file.
+/// Recomputes a checkpoint like verify_by_replay(), and writes its pruned, missing or damaged file
+/// again. If the new bytes do not have the recorded SHA-256, records ReplayDiverged and writes no
+/// file. If the replay must start from a pruned state of the parent, restores that state first.
 Replay regenerate_checkpoint(Store& store, const CheckpointRecord& record, std::size_t threads = 1);
 
 }  // namespace shearcell

@@ -82,7 +82,7 @@ std::string_view first_columns(std::string_view text, std::size_t count) {
 }
 
 std::string filled(std::string_view help, std::size_t width) {
-  constexpr std::size_t kNarrowest = 24;  // minimum width of the last column
+  constexpr std::size_t kNarrowest = 24;  // minimum width of wrapped lines
   std::vector<std::string> paragraphs;
   std::istringstream lines{std::string(help)};
   bool goes_on = false;  // whether the next line may continue the paragraph
@@ -100,7 +100,8 @@ std::string filled(std::string_view help, std::size_t width) {
   for (const std::string& paragraph : paragraphs) {
     const std::size_t begin = paragraph.find_first_not_of(' ');
     std::size_t indent = begin == paragraph.npos ? 0 : begin;
-    // Wrapped lines are indented to the last column, which begins after two or more blanks.
+    // If two or more blanks separate the text into two columns, wrapped lines are indented to the
+    // beginning of the second column.
     const std::size_t blanks = indent > 0 ? paragraph.find("  ", indent) : paragraph.npos;
     if (blanks != paragraph.npos) indent = paragraph.find_first_not_of(' ', blanks);
     if (indent + kNarrowest > width) indent = std::min(begin, width / 2);

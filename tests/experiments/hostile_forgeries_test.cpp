@@ -61,7 +61,7 @@ std::vector<Case> forged_events() {
                          b["parent_checkpoint"] = std::string(64, 'a');
                        }
                      }),
-               "started this run from the wrong state"),
+               "this run started from the wrong state"),
       reported("sha256_of_a_manifest", "verify", 4,
                event("ManifestRegistered", [](json& b) { b["sha256"] = std::string(64, 'a'); }),
                "the SHA-256 of the registered text differs"),

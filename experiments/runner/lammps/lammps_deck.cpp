@@ -86,7 +86,7 @@ class Deck {
         +kLeft, +kRight, +kBottom, +kTop);
     add(text_, "# (type {}) that represents the moving wall and touches nothing.", +kWall);
     add(text_, "read_data {} extra/atom/types 1", data);
-    // The atom of the wall gets x and y of a grain: LAMMPS creates no atom outside the box.
+    // LAMMPS creates no atom outside the box, so the wall's atom is created at x and y of a grain.
     const Eigen::Vector3d start = task_.state.position.col(0) * d_;
     add(text_, "create_atoms {} single {:.17g} {:.17g} {:.17g} units box", +kWall, start.x(),
         start.y(), cell_.depth / 2 * d_);
@@ -158,13 +158,15 @@ pair_coeff * * ${{law}})",
   }
 
   // Moves the wall grains of a group. `x` and `vx` are LAMMPS variables of the motion along x: the
-  // displacement from the data file, and the velocity. If `rises`, they follow the wall in y.
+  // displacement from the data file, and the velocity. If `rises`, the grains also follow the
+  // moving wall in y.
   void carry(const char* group, const char* x, const char* vx, bool rises) {
     add(text_, "fix {0} {0} move variable v_{1} v_{2} v_zero v_{3} v_{4} v_zero", group, x,
         rises ? "rise" : "zero", vx, rises ? "rising" : "zero");
   }
 
-  // LAMMPS moves the wall's atom first, because wall grains follow the height of this atom.
+  // `fix step` comes first. It moves the atom that represents the moving wall, and the wall grains
+  // follow the height of this atom.
   void motion() {
     add(text_,
         "\n# Velocity Verlet for grains and the moving wall. Wall grains follow their walls.");
@@ -191,8 +193,8 @@ pair_coeff * * ${{law}})",
   }
 
   // Side planes rotate about their upper ends. LAMMPS moves a region relative to its first pose.
-  // If shearcell itself runs LAMMPS, the bottom and top planes use wall/harmonic, because fix
-  // wall/region reports its force only for the first step.
+  // In the engine's script, the bottom and top planes use wall/harmonic: the motion of the wall
+  // depends on their force, and fix wall/region reports its force only for the first step.
   void plane(std::size_t side) {
     const auto [point, normal] = wall_planes(cell_, pose_)[side];
     const double x = point[0] * d_, y = point[1] * d_, k = scene_.stiffness * m_;
@@ -299,7 +301,8 @@ fix drag grains addforce v_drag_x v_drag_y v_drag_z)",
     add(text_, "thermo {}\nthermo_style custom step\nthermo_modify flush yes", task_.check_every);
   }
 
-  // A frame has velocities half a step earlier than its positions, so f/m dt/2 is subtracted.
+  // A frame must have the velocities of half a step before its positions, so f/m dt/2 is subtracted
+  // from the velocities in LAMMPS.
   void frames() {
     for (const char axis : {'x', 'y', 'z'}) {
       add(text_, "variable half_{0} atom v{0}-{1:.17g}*f{0}/mass", axis, half_step());
@@ -316,8 +319,9 @@ fix drag grains addforce v_drag_x v_drag_y v_drag_z)",
         task_.end);
   }
 
-  // Defines the output: during one cycle of a shear, or one second of a packing. It comes before
-  // the first `run`: later output would need a second setup, with changed velocities for the drag.
+  // Defines the output of one cycle of a shear or one second of a packing. The definition must come
+  // before the first `run`. Otherwise LAMMPS would need a second setup, and would then compute the
+  // drag from the velocities that begin() has changed.
   void watching(std::string_view name) {
     const auto steps = shears_ ? cycle_steps(task_.drive)
                                : static_cast<std::uint64_t>(std::nearbyint(1 / scene_.time_step));

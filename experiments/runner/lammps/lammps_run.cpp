@@ -170,7 +170,7 @@ void LammpsRun::ask_to_stop() {
 std::uint64_t LammpsRun::step() {
   std::ifstream log(folder_.path() / "log", std::ios::binary);
   if (!log.seekg(-64, std::ios::end)) return step_;
-  // LAMMPS logs step numbers and messages. This reads the last complete line of the log.
+  // LAMMPS logs step numbers and messages. If the last complete line is a number, it is the step.
   std::string tail(64, '\0');
   log.read(tail.data(), 64);
   tail.resize(tail.rfind('\n') == tail.npos ? 0 : tail.rfind('\n'));
