@@ -19,7 +19,7 @@ using Bytes = std::span<const std::byte>;
 static_assert(std::endian::native == std::endian::little, "files need little-endian numbers");
 
 /// Types of messages in an object header (section IV.A.2 of the format). Other messages are
-/// ignored. If an object stores a part in such a message, a look-up of the part finds nothing.
+/// ignored. An object that stores its links or its layout in such a message seems to have none.
 enum Message : std::uint64_t {
   kSpace = 1,
   kType = 3,

@@ -51,7 +51,7 @@ void require_agreement(const Database& into, const std::string& name,
                        const std::vector<Source>& sources) {
   using Step = std::pair<std::string, std::uint64_t>;  // run and step
   using States = std::set<std::string>;
-  // With each entry, the name of the first store that has this run, or a state at this step.
+  // Each entry also holds the name of the first store that has this run, or a state at this step.
   std::map<std::string, std::pair<Stage, std::string>> runs;
   std::map<Step, std::pair<States, std::string>> states;
   const auto compare = [&](const Database& tables, const std::string& store) {

@@ -53,8 +53,8 @@ class ChildProcess {
   /// Waits until the program ends and returns exit_code().
   int wait();
 
-  /// Processor time of the started program [s]. While it runs, the time of its own child processes
-  /// is not included; after its end, the time of those for which it waited is included.
+  /// Processor time of the program [s]. While the program runs, this excludes the processes that
+  /// the program started. After the program has ended, this includes those for which it waited.
   double core_seconds() const;
 
  private:
