@@ -14,8 +14,9 @@ namespace {
 
 constexpr double kGrainVolume = std::numbers::pi / 6;
 constexpr double kGrainArea = std::numbers::pi / 4;
-// Volume that a rough wall takes from the cell, per wall area [d]: wall grains and the gaps between
-// them. 0.66 wall grains per d^2, recessed by 0 to d/4, have on average 0.17 d^3 inside the cell.
+// Volume that a rough wall takes from the cell, per wall area [d]. A wall has 0.66 wall grains per
+// d^2, recessed by 0 to d/4. Each wall grain has on average 0.17 d^3 inside the cell, which gives
+// 0.11 d. The rest is the gaps between the wall grains.
 constexpr double kRoughLayer = 0.175;
 constexpr std::uint32_t kFillStream = 4;  // streams 0 to 3 belong to the wall sides
 

@@ -11,9 +11,9 @@
 //  3. A position is a row {x, y, z, margin} of four doubles. Whole rows are loaded and transposed
 //     in registers, without gather instructions. A lane writes only the row of its grain.
 //
-// One array holds the rows in this order: the grains, padded; one padding row, which touches
-// nothing; the grains of the moving wall; the other wall grains. The margin [d] is the distance
-// that a grain may move in the frame of the shear before its neighbour list must be rebuilt.
+// One array holds the rows in this order: the grains, padded; one padding row, far from all grains;
+// the grains of the moving wall; the other wall grains. The margin [d] is the distance that a grain
+// may move in the frame of the shear before its neighbour list must be rebuilt.
 #pragma once
 
 #include <array>
@@ -32,7 +32,8 @@ constexpr std::size_t padded(std::size_t grains) {
   return (grains + 7) / 8 * 8;
 }
 
-/// Offset of the padding row, which touches nothing. It follows the rows of grains and spare lanes.
+/// Offset of the padding row, which stands for a neighbour that is far from all grains. The padding
+/// row comes after the rows of all grains and of all spare lanes.
 constexpr std::int32_t padding_offset(std::size_t grains) {
   return static_cast<std::int32_t>(4 * padded(grains));
 }
@@ -43,7 +44,8 @@ constexpr std::int32_t wall_offset(std::size_t grains) {
 }
 
 /// Flags of a block of grains. kNearSeam: the nearest image of a neighbour is across the periodic
-/// boundary in z. Without a flag, the kernel skips the code for this boundary or wall.
+/// boundary in z. If a flag is not set, the kernel skips the code for the boundary or the
+/// wall of that flag.
 inline constexpr std::uint8_t kNearSeam = 1, kNearMovingWall = 2, kNearOtherWall = 4;
 inline constexpr std::uint8_t kNearWall = kNearMovingWall | kNearOtherWall;
 

@@ -51,7 +51,9 @@ void Reference::set(const double* rows, std::size_t grains, const WallPose& pose
     }
     return coordinate;
   });
-  rounding_ = 0x1p-22 * largest;  // a float is rounded by at most 2^-24 of its value
+  // Each coordinate is rounded by at most 2^-24 of its value. The factor of 4 leaves room for the
+  // errors of all three coordinates and for the tilt.
+  rounding_ = 0x1p-22 * largest;
 }
 
 double Reference::moved(const double* rows, std::size_t grain, const WallPose& pose) const {
@@ -166,8 +168,9 @@ bool NeighbourLists::prune(const Snapshot& now) {
   return true;
 }
 
-// Each pair closer than 1 plus its inner margins must be in the outer lists. So an inner margin is
-// at most the outer margin minus the movement so far. Returns false if too little is left.
+// Each pair closer than 1 plus the inner margins of its two grains must be in the outer lists. So
+// the inner margin of a grain is at most its outer margin minus its movement so far. Returns false
+// if this difference is less than settings_.inner_margin() for any grain or for the walls.
 bool NeighbourLists::set_inner_margins(const Snapshot& now) {
   const double least = settings_.inner_margin();
   const double horizon = kInnerHorizon * now.time_step;

@@ -20,9 +20,10 @@ namespace shearcell {
 namespace HWY_NAMESPACE {
 #if SHEARCELL_HAS_SIMD
 
-// Number of neighbours per lane whose series are computed at once. Within a series, each
-// operation waits for the previous one. Four neighbours fit in 32 registers if coefficients are
-// loaded for each use. With 16 registers, one neighbour at a time is faster (README.md).
+// Number of neighbours for which each lane computes the polynomial kContactSeries at the same time.
+// Within one polynomial, each operation waits for the previous one. Four neighbours fit in 32
+// registers if coefficients are loaded for each use. With 16 registers, one neighbour at a time is
+// faster (README.md).
 constexpr std::size_t kSlots = HWY_TARGET == HWY_AVX3 ? 4 : 1;
 
 // Computes contact_factor(s) for kCount numbers s <= kSeriesEnd.

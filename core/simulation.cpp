@@ -122,7 +122,8 @@ void Simulation::set_state(const State& state) {
   was_set_ = true;
 }
 
-// Prepares a kernel call at the present positions. It will check list margins at `tan_theta`.
+// Prepares a kernel call at the present positions. The kernel will check the list margins at
+// `tan_theta`.
 void Simulation::set_contacts(double tan_theta) {
   task_.rows = rows_[0].data();
   task_.next_rows = rows_[1].data();
@@ -247,7 +248,8 @@ void Simulation::watch(const WatchdogLimits& limits, double time_step) const {
                 .wall_velocity = wall_velocity_});
 }
 
-// Net upward force: the inward load, plus the contact forces that the grains exert on the wall.
+// Force on the moving wall without its drag, positive upwards: the load, which pushes the wall into
+// the cell, plus the contact forces of the grains on the wall.
 double Simulation::force_on_wall() const {
   double contacts = 0;
   for (const std::int32_t g : lists_.at_moving_wall()) {
@@ -305,11 +307,13 @@ void Simulation::rebuild_lists(const Drive& drive) {
     sites.push_back({static_cast<std::int32_t>(4 * g), walls + id_[g]});
   }
   order_.build(cell_, pose_, reach, rows_[0].data(), sites, team_);
-  // If many grains are fast, the lists become invalid long before memory must be sorted again.
+  // Not every rebuild sorts the grains in memory: if many grains are fast, the lists must be
+  // rebuilt much more often than the grains must be sorted.
   const bool stale = counts_.builds < 2 || step_ - sorted_at_ >= 200;
   if (settings_.lists.sort_memory && stale) sort_memory();
   lists_.build(snapshot(drive), id_, order_);
-  // Both buffers need the padding row and all wall grains. Walls::place updates only active grains.
+  // Both buffers need the padding row and the rows of all wall grains. They are copied here,
+  // because Walls::place() later writes only the rows of the active wall grains.
   std::copy(rows_[0].begin() + padding_offset(id_.size()), rows_[0].end(),
             rows_[1].begin() + padding_offset(id_.size()));
   ++counts_.builds;

@@ -9,9 +9,10 @@
 
 namespace shearcell {
 
-/// Starts workers - 1 threads. Thread k = 1, 2, ... calls work(k); the caller must call work(0). If
-/// the system reaches a limit, fewer threads are started, so no result may depend on the number of
-/// threads. `work` must not throw. The destructor of the returned vector joins the threads.
+/// Starts (`workers` - 1) threads. Thread k = 1, 2, ... calls work(k); the caller must call
+/// work(0). If the system reaches a limit, fewer threads are started, so no result may depend on
+/// the number of threads. `work` must not throw. The destructor of the returned vector joins the
+/// threads.
 template <class Work>
 std::vector<std::jthread> start_threads(std::size_t workers, const Work& work) {
   std::vector<std::jthread> threads;

@@ -141,7 +141,8 @@ void check_time_step(const WatchTask& task) {
 
 void check_place(const WatchTask& task, std::size_t g) {
   const double* own = task.rows + 4 * g;
-  // If x or y is NaN, the first distance is NaN and stays the smallest, so the check fails.
+  // If x or y is NaN, the first distance is NaN and stays the smallest, so the first check below
+  // throws.
   double smallest = distance_to(task.planes[0], own[0], own[1]);
   for (const WallPlane& plane : task.planes) {
     const double distance = distance_to(plane, own[0], own[1]);

@@ -29,11 +29,12 @@ Eigen::Matrix3Xd near_walls(const Cell& cell, const State& state, const WallPose
 
 // Generalized forces of the grains on the walls. A wall point at height y is displaced in x by
 // (y - top) tan(theta). A horizontal wall moves as a rigid body, so y is the height of its plane.
+// m is the mass of a grain.
 struct WallForces {
   double on_tilt = 0;  // force conjugate to tan(theta): sum of f_x (y - top) [m d^2/s^2]
-  // on_height times tan(theta) is conjugate to the height of the moving wall [m d/s^2]. on_height
-  // is the sum of f_x on a moving bottom wall, or of -f_x on the three other walls if the top wall
-  // moves.
+  // If the bottom wall moves: sum of f_x on the bottom wall. If the top wall moves: sum of -f_x on
+  // the three other walls [m d/s^2]. The product on_height * tan(theta) is the force conjugate to
+  // the height of the moving wall.
   double on_height = 0;
 };
 

@@ -84,7 +84,7 @@ bool Settle::finished(const Simulation& simulation) const {
       parameters_.time_limit, -1, step,
       "Raise the limit (settle_time_limit_s) or the settling tolerances. Check that "
       "the pressure can lift the grains. Check that the drag (drag_kg_per_s) is "
-      "large enough to stop the grains and does not stop the wall");
+      "large enough to stop the grains, but small enough to let the wall move");
 }
 
 StageProgress Settle::advance(Simulation& simulation, std::uint64_t most_steps) const {

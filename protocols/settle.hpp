@@ -27,8 +27,9 @@ struct SettleParameters {
 double pressing_time(const Scene& scene, double height, double per_area);
 
 /// Gravity is switched on only after the moving wall has pressed the grains together. With gravity
-/// from the start, the grains would form a heap. If the heap weighs nearly as much as the load
-/// P A_w (0.95 P A_w at N = 18200), it jams between rough side walls before it reaches the top.
+/// from the start, the grains would form a heap, which a moving bottom wall must lift. If the
+/// weight of the heap is nearly the load P A_w (the weight is 0.95 P A_w at N = 18200), the heap
+/// jams between rough side walls before it reaches the top wall.
 ///
 /// Under gravity, the packing is checked every 0.1 s. It has settled when three numbers are below
 /// their tolerances: the force imbalance of the moving wall, the drag force B_w y' on this wall

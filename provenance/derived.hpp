@@ -16,7 +16,7 @@
 
 namespace shearcell {
 
-/// The key of an object: everything that determines its content.
+/// The key of a derived object (a stored measure): everything that determines its content.
 struct DerivedKey {
   std::string checkpoint;     ///< SHA-256 of the checkpoint's file
   std::string measure;        ///< name and parameters of the computation
@@ -28,9 +28,10 @@ struct DerivedObject {
   std::vector<std::byte> content;
 };
 
-/// Short digests of the objects of one checkpoint. A key has the form WORD-HASH: the measure's
-/// first word, and a short hash of measure and version. When a checkpoint is pruned, the log stores
-/// the digests of its measures, because these measures cannot be computed again.
+/// Short digests of the derived objects of one checkpoint. A key of the map has the form WORD-HASH:
+/// the first word of DerivedKey::measure, and a short hash of `measure` and `version`. When a
+/// checkpoint is pruned, the log stores the digests of its measures, because these measures cannot
+/// be computed again.
 using Digests = std::map<std::string, std::string>;
 /// The entry of one object in Digests.
 Digests::value_type digest_entry(const DerivedObject& object);
@@ -48,8 +49,8 @@ class DerivedCache {
   /// Contents of the objects, in the order of `keys`; nothing for an object that is not stored.
   std::vector<std::optional<std::vector<std::byte>>> get(std::span<const DerivedKey> keys);
 
-  /// The digests of the objects of a checkpoint that get() would return. With `damaged_too`, also
-  /// has "" for each damaged object. Empty if the file cannot be read.
+  /// The digests of those objects of the checkpoint that get() would return. With `damaged_too`,
+  /// the result also has the value "" for each damaged object. Empty if the file cannot be read.
   Digests digests(const std::string& checkpoint, bool damaged_too = false);
 
   /// Stores all objects or, after an error, none. Replaces objects with the same keys.

@@ -16,9 +16,9 @@
 
 namespace shearcell::events {
 
-// `fields` lists the members of a payload, for reading and for writing. A member with `true` as its
-// third argument may be missing, and is written only if it is not empty. All other members are
-// required. std::optional members may be null.
+// `fields` calls `field` for each member of a payload, for reading and for writing. If the third
+// argument of this call is `true`, the member may be missing, and is written only if it is not
+// empty. All other members are required. std::optional members may be null.
 
 /// Base of the events that hold the text of a file.
 struct TextRegistered {

@@ -19,7 +19,7 @@ using Bytes = std::span<const std::byte>;
 static_assert(std::endian::native == std::endian::little, "files need little-endian numbers");
 
 /// Types of messages in an object header (section IV.A.2 of the format). Other messages are
-/// ignored: an object that needs them lacks what is looked up in it.
+/// ignored. An object that stores its links or its layout in such a message seems to have none.
 enum Message : std::uint64_t {
   kSpace = 1,
   kType = 3,
@@ -77,12 +77,13 @@ bool is_type(Bytes found, std::string_view wanted) {
          std::memcmp(found.data(), wanted.data(), wanted.size()) == 0;
 }
 
-/// Size of each dimension (empty for a scalar); nothing if the message is not supported.
+/// Size of each dimension (empty for a scalar); nothing if the message is not supported. Maximum
+/// sizes, which the message may hold after the sizes, are not read.
 std::optional<std::vector<std::uint64_t>> shape_of(Bytes space) {
   Cursor cursor(space);
   const std::uint64_t version = cursor.number(1), rank = cursor.number(1);
   if (version != 1 || rank > 2) return std::nullopt;
-  cursor.take(6);  // flags and reserved bytes; maximum sizes after the shape are ignored
+  cursor.take(6);  // flags and reserved bytes
   std::vector<std::uint64_t> shape;
   for (std::uint64_t d = 0; d < rank; ++d) shape.push_back(cursor.number(8));
   return shape;

@@ -39,9 +39,9 @@ Holder this_process();
 inline constexpr std::uint64_t kLongestLeaseMs = 60'000;
 
 /// Whether another program may continue the run. A lease lapses when it expires, when
-/// kLongestLeaseMs has passed since its renewal, or when the process of its holder is dead (checked
-/// only if it ran in the same boot and namespace). It also lapses when the clock was set back to a
-/// time before the renewal.
+/// kLongestLeaseMs has passed since its renewal, or when the process of its holder is dead (this is
+/// checked only if Holder::place is the same for the holder and this process). A lease also lapses
+/// when the clock was set back to a time before the renewal.
 bool lapsed(const Lease& lease, std::uint64_t now);
 
 /// "host vm, process 1234".

@@ -133,7 +133,8 @@ std::vector<RunLineage> run_lineage(const Store& store, const std::string& id) {
     });
     for (Attempt& attempt : stage.attempts) {
       if (!attempt.from_checkpoint.empty() || stages.empty()) continue;
-      // Early events do not contain the initial state, which was the parent's newest checkpoint.
+      // Events of early program versions do not contain the initial state. In these versions, the
+      // initial state was always the newest checkpoint of the parent.
       attempt.from_checkpoint = newest_before(stages.back(), attempt.seq);
       if (!attempt.from_checkpoint.empty()) attempt.from_run = stage.stage.parent;
     }

@@ -51,8 +51,9 @@ void require_agreement(const Database& into, const std::string& name,
                        const std::vector<Source>& sources) {
   using Step = std::pair<std::string, std::uint64_t>;  // run and step
   using States = std::set<std::string>;
-  std::map<std::string, std::pair<Stage, std::string>> runs;  // with the name of a store
-  std::map<Step, std::pair<States, std::string>> states;      // with the name of a store
+  // Each entry also holds the name of the first store that has this run, or a state at this step.
+  std::map<std::string, std::pair<Stage, std::string>> runs;
+  std::map<Step, std::pair<States, std::string>> states;
   const auto compare = [&](const Database& tables, const std::string& store) {
     for (const Stage& stage : query_stages(tables)) {
       const auto& [known, other] = runs.try_emplace(stage.id, stage, store).first->second;
@@ -136,7 +137,8 @@ struct RunMerge {
         event.type == CheckpointRecorded::kType) {
       return attempts.contains(event.seq);
     }
-    // Events that reject, prune or regenerate a checkpoint are copied only if `into` lacks it.
+    // An event that rejects, prunes or regenerates a checkpoint is copied only if the checkpoint is
+    // new (see is_news).
     if (!event.type.starts_with("Checkpoint")) return true;
     return !known.contains(text_at(event.body(), "sha256"));
   }
@@ -199,12 +201,13 @@ RunMerge plan_run(const Database& into, const EventLog& log, const Database& sou
   return plan;
 }
 
-/// Whether the stream holds the text of a manifest or of a file of grains.
+/// Whether the stream holds the text of a manifest or of a file of grain positions.
 bool holds_a_text(std::string_view stream) {
   return stream.starts_with("manifest/") || stream.starts_with("packing/");
 }
 
-/// Reads and checks a source. If `runs` is given, keeps only these runs, manifests, packing files.
+/// Reads and checks a source. If `runs` is not empty, keeps only the events of these runs, of all
+/// manifests and of all files of grain positions.
 Source read_source(const std::filesystem::path& folder, const std::set<std::string>& runs) {
   const std::filesystem::path file = folder / "store.sqlite";
   if (!std::filesystem::exists(file)) {
@@ -258,7 +261,8 @@ void merge_events(Database& into, EventLog& log, const sqlite::WriteTransaction&
     const std::string stream = run_stream(stage.id);
     runs.emplace(stream, plan_run(into, log, source.tables, streams.at(stream), stage));
   }
-  std::erase_if(streams, [&log](const auto& entry) {  // leave out texts that `into` has
+  // Leaves out the streams of manifests and of files of grain positions that `into` already has.
+  std::erase_if(streams, [&log](const auto& entry) {
     return holds_a_text(entry.first) && log.version(entry.first) > 0;
   });
   const auto take = [&](const Event& event) { apply(into, log.append_copy(lock, event)); };
@@ -274,8 +278,8 @@ void merge_events(Database& into, EventLog& log, const sqlite::WriteTransaction&
   for (const auto& [stream, run] : runs) {
     if (const auto closing = run.closing_event(into)) take(*closing);
   }
-  // The last event of a figure is the valid one. If the store had a newer figure before the merge,
-  // the event of the newer figure is appended again.
+  // The last event of a figure is the valid one. If the store had a newer version of a copied
+  // figure before the merge, the event of that newer version is appended again.
   for (const FigureRecord& copied : query_figures(into)) {
     const auto own = std::ranges::find(figures, copied.name, &FigureRecord::name);
     if (own == figures.end() || own->recorded_at <= copied.recorded_at) continue;
@@ -332,7 +336,8 @@ std::vector<MergeReport> Store::merge(const std::vector<std::filesystem::path>& 
         sqlite::WriteTransaction lock(database_);
         require_idle(*this);
         merge_events(database_, log_, lock, source, report);
-        // The copied events may leave a checkpoint rejected, although its copied file is valid.
+        // After the copied events, a checkpoint may still be marked as rejected, although the file
+        // that was copied is valid.
         for (const CheckpointRecord& record : needed) {
           const auto now = query_checkpoint(database_, record.run, record.sha256);
           if (!now || now->state != CheckpointState::rejected) continue;

@@ -13,11 +13,12 @@
 
 namespace shearcell {
 
-/// The objects of one store folder. Several threads and processes may use it at the same time: an
-/// object appears under its name only when it is complete. Links in the store are not followed.
+/// The objects of one store folder. Several threads and processes may use the folder at the same
+/// time: an object appears under its name only when it is complete. Links in the store are not
+/// followed.
 class ObjectStore {
  public:
-  /// The folder must exist; the first put creates `objects` in it.
+  /// The store folder must exist. The first call of put() creates the folder `objects` in it.
   explicit ObjectStore(std::filesystem::path store_folder);
 
   /// Writes the bytes to disk (with fsync) and returns their SHA-256. Keeps an existing object if

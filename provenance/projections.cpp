@@ -120,14 +120,16 @@ class Projector {
                       event_.seq, event_.type, event_.stream));
     }
     require_cycles(ask.target_cycles, ask.checkpoint_every);
-    // `until` may have ended the run before its target, so the new target is compared with `cycle`.
+    // A completed run becomes `declared` if the new target exceeds the old target, or the cycle at
+    // which `until` ended the run before the old target.
     run("INSERT INTO runs(id, ordinal, parent, kind, resolved, state, grains, target_cycles, "
         "updated_at) VALUES(?,?,NULLIF(?,''),?,?,'declared',?,?,?) ON CONFLICT(id) DO UPDATE SET "
         "state = iif(state = 'completed' AND min(target_cycles, cycle) < excluded.target_cycles, "
         "'declared', state), target_cycles = max(target_cycles, excluded.target_cycles)",
         id_, event_.seq, d.parent, d.kind, d.resolved.dump(), d.grains, ask.target_cycles,
         event_.recorded_at);
-    // A run declared again becomes the last one, unless its target grows or its interval changes.
+    // A repeated declaration makes the run the last one that was declared for its place (see
+    // holds_place()), unless the declaration raises the target or changes the checkpoint interval.
     run("INSERT INTO memberships VALUES(?,?,?,?,?,?,?,?,?,?,?,?) ON CONFLICT DO UPDATE SET "
         "ordinal = iif(excluded.target_cycles <= target_cycles AND excluded.checkpoint_every = "
         "checkpoint_every, excluded.ordinal, ordinal), "
@@ -163,8 +165,9 @@ class Projector {
 
   void operator()(const events::RunCompleted& e) const {
     const json ended = member_of(e.summary, "ended"), asked = member_of(ended, "memberships");
-    // The run is not complete if its target was raised while it was computed. A run that ended
-    // early, by `until`, is also not complete if another experiment has asked for it meanwhile.
+    // The run is not complete if its target was raised during the computation. A run that `until`
+    // ended early is also not complete if another experiment has asked for the run during the
+    // computation, because that experiment may need more cycles.
     run("UPDATE runs SET error = '', ends = json_insert(ends, '$[#]', json(?2)), state = "
         "iif(target_cycles > ?3 OR ?4 < (SELECT count(*) FROM memberships WHERE run = ?1), "
         "'declared', 'completed') WHERE id = ?1",
@@ -219,7 +222,8 @@ class Projector {
     run("UPDATE runs SET state = 'running', error = '', attempts = attempts + 1 WHERE id = ?", id_);
   }
 
-  /// Makes `manifest` the newest at this scale unless the present newest was registered later.
+  /// Records `manifest` as the newest manifest of this experiment and scale, unless the manifest
+  /// that is recorded as the newest now was registered later.
   void show_newest(const std::string& experiment, const std::string& scale,
                    const std::string& manifest) const {
     run("INSERT INTO newest VALUES(?1, ?2, ?3) ON CONFLICT DO UPDATE SET manifest = ?3 WHERE "
@@ -238,7 +242,8 @@ class Projector {
   }
 
   /// Sets cycle, step and state hash of the run to those of its last recorded checkpoint. Does
-  /// nothing if the run is past checkpoint `sha256`, because later checkpoints may be pruned.
+  /// nothing if the step of the run is later than the step of checkpoint `sha256`: the checkpoint
+  /// at the later step may be pruned, and pruning must not set the run back.
   void move_to_furthest_from(const std::string& sha256) const {
     run("UPDATE runs SET (cycle, step, state_hash) = (SELECT coalesce(max(cycle), 0), "
         "coalesce(max(step), 0), coalesce(max(state_hash), '') FROM (SELECT * FROM checkpoints "

@@ -16,7 +16,8 @@
 
 namespace shearcell {
 
-/// Derived tables. Schemas 1 and 2 lack the last two, and columns of `runs` and `memberships`.
+/// Derived tables. Schemas 1 and 2 lack the last two tables and some columns of `runs` and
+/// `memberships`.
 inline constexpr std::array<std::string_view, 6> projected_tables = {
     "runs", "memberships", "checkpoints", "figures", "manifests", "newest"};
 
@@ -30,7 +31,7 @@ sqlite::Database empty_projections(const std::string& name);
 /// at most updated_at of a run. Throws StoreDamaged when the payload lacks a required member.
 void apply(sqlite::Database& database, const Event& event);
 /// Applies the event. Then checks that the event has a time, and that a registered manifest or file
-/// of grains has the recorded SHA-256. Returns a description of what is wrong, or "".
+/// of grain positions has the recorded SHA-256. Returns a description of what is wrong, or "".
 std::string try_apply(sqlite::Database& database, const Event& event);
 
 /// Drops the tables and derives them from the whole log.
@@ -52,8 +53,8 @@ std::map<std::string, TableRows> projection_rows(const sqlite::Database& databas
 NotFound unknown_stage(std::string_view id);
 NotFound unknown_checkpoint(std::string_view run, std::string_view sha256);
 
-/// Whether `wanted` adds a place to the stored stage `known`, or at a known place more cycles or
-/// another checkpoint interval. True if no stage is stored.
+/// Whether the stored stage `known` lacks the place of `wanted`, or has that place with a smaller
+/// target or another checkpoint interval. True if no stage is stored.
 bool adds_something(const std::optional<Stage>& known, const Membership& wanted);
 /// False if another run was declared for `place` after `run`, for example from another packing.
 bool holds_place(const sqlite::Database& database, std::string_view run, const Place& place);

@@ -80,7 +80,8 @@ Database::Database(const std::filesystem::path& file, Access access)
     inode_ = opened.st_ino;
   }
   sqlite3_busy_timeout(handle, kBusyTimeoutMs);
-  constexpr std::size_t beside = 64 << 10;  // other columns; the limit is for a whole row
+  // SQLite's limit is for a whole row, so `beside` bytes are allowed for the other columns.
+  constexpr std::size_t beside = 64 << 10;
   sqlite3_limit(handle, SQLITE_LIMIT_LENGTH, static_cast<int>(StoreLimits::value_bytes + beside));
   sqlite3_limit(handle, SQLITE_LIMIT_ATTACHED, 0);
   // A forged schema could have views and triggers that run forever or that open other files.

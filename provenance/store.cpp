@@ -70,8 +70,8 @@ std::filesystem::path prepare_folder(std::filesystem::path folder, Access access
   return folder;
 }
 
-/// Throws StoreDamaged if the folder of the checkpoints is missing or empty. Otherwise the program
-/// would reject all checkpoints and compute all runs again.
+/// Throws StoreDamaged if the folder of the checkpoints is missing or empty. Without this check,
+/// the program would reject all checkpoints and compute all runs again.
 void require_objects(const std::filesystem::path& folder, const sqlite::Database& database) {
   try {
     sqlite::Statement kept(database, "SELECT 1 FROM checkpoints WHERE state = 'recorded' LIMIT 1");
@@ -207,7 +207,9 @@ void Store::append_held(const std::string& id, const NewEvent& event, bool relea
   const auto held = held_.find(id);
   if (held == held_.end()) {
     throw ConcurrencyConflict(
-        fmt::format("run {}: this process has not started the run, so it cannot record it", id));
+        fmt::format("run {}: this process is not computing the run, so it may not record events of "
+                    "the run",
+                    id));
   }
   if (const std::string why = loss_of(database_, self_.token, id, held->second); !why.empty()) {
     held_.erase(held);
@@ -262,8 +264,10 @@ std::pair<std::string, std::string> Store::packing_text(const std::string& sha25
     auto found = std::get<events::PackingRegistered>(events::decode(event));
     if (sha256_hex(found.text) == sha256) return {std::move(found.text), std::move(found.path)};
   }
-  throw StoreDamaged(fmt::format(
-      "the file of grains {:.12} is not in the store; `shearcell run` records it", sha256));
+  throw StoreDamaged(
+      fmt::format("the file of grain positions with SHA-256 {:.12} is not in the store; "
+                  "`shearcell run` records the file",
+                  sha256));
 }
 
 void Store::declare_stage(const Stage& declared) {
@@ -283,7 +287,8 @@ void Store::declare_stage(const Stage& declared) {
   for (const Membership& m : declared.memberships) {
     const NewEvent event = encode(events::RunDeclared{declared, m});
     if (adds_something(known, m)) append(run_stream(declared.id), event, lock);
-    // Another stage may have been declared later for this experiment, scale, variant and seed.
+    // If another stage was declared later for this place (experiment, scale, variant and seed),
+    // this stage is declared again and becomes the last one.
     if (!holds_place(database_, declared.id, m.place)) append(run_stream(declared.id), event, lock);
   }
   lock.commit();
@@ -601,7 +606,8 @@ void Store::restore_checkpoint(const CheckpointRecord& record, const Checkpoint&
   if (checkpoint.run != record.run || state != record.state_hash || sha256 != record.sha256) {
     throw StoreDamaged(
         fmt::format("checkpoint {:.12} of run {:.12}: the regenerated state has hash {:.12} "
-                    "(recorded: {:.12}), the file has hash {:.12}; the file was not stored",
+                    "(recorded: {:.12}), and the regenerated file has hash {:.12}; the regenerated "
+                    "file was not stored",
                     record.sha256, record.run, state, record.state_hash, sha256));
   }
   for (;;) {

@@ -33,7 +33,7 @@ struct LoadedCheckpoint {
 
 struct Finding {
   /// `error`: a record is lost or changed. `note`: every record is intact. `unread`: the subject
-  /// could not be checked, because the machine failed.
+  /// could not be checked, because the operating system reported an error.
   enum class Severity { note, unread, error };
   Severity severity = Severity::note;
   std::string subject;  ///< file, event or table
@@ -59,7 +59,7 @@ struct MergeReport {
   Head head;                      ///< head of the source when it was read
   std::uint64_t events = 0;       ///< number of copied events
   std::uint64_t checkpoints = 0;  ///< number of copied files
-  std::uint64_t bytes = 0;        ///< total size of these files
+  std::uint64_t bytes = 0;        ///< total size of the copied files
 };
 
 /// Decodes the checkpoint file `image`. Throws StoreDamaged if the file is damaged or not
@@ -70,13 +70,14 @@ Checkpoint read_checkpoint(std::span<const std::byte> image, const CheckpointRec
 
 /// Thread-safe. Several processes may open one store on a local disk; conflicting writes throw
 /// ConcurrencyConflict. Every function may throw StoreDamaged, and std::runtime_error when the
-/// machine fails or another process keeps the store locked.
+/// machine fails (disk full, no permission) or another process keeps the store locked.
 ///
 /// Between start_stage() and the end of the attempt this object holds a lease on the run. Calls of
 /// record_checkpoint() and renew_leases() renew the lease. Another program may continue the run
 /// when the lease has expired, or at once when the process of the holder is dead. If the
-/// previous holder then records anything, this throws ConcurrencyConflict, and the previous holder
-/// must stop the computation. The destructor releases all leases.
+/// previous holder then calls a function that records something for the run, the function throws
+/// ConcurrencyConflict, and the previous holder must stop the computation. The destructor releases
+/// all leases.
 class Store {
  public:
   /// Throws NotFound if there is no store and `access` does not create one; UsageError if a store
@@ -98,24 +99,26 @@ class Store {
   std::string register_manifest(std::string_view text, std::string_view path,
                                 const nlohmann::json& info);
 
-  /// Stores the text of a file of grains, only once, and returns its SHA-256.
+  /// Stores the text of a file of grain positions, only once, and returns its SHA-256.
   std::string register_packing(std::string_view text, std::string_view path);
-  /// The text of the file of grains that has this SHA-256, and the path that register_packing()
-  /// recorded. Throws StoreDamaged if the store lacks the text.
+  /// The text of the file of grain positions that has this SHA-256, and the path that
+  /// register_packing() recorded. Throws StoreDamaged if the store lacks the text.
   std::pair<std::string, std::string> packing_text(const std::string& sha256) const;
 
-  /// Records a membership in three cases: it is new, the store has it with a smaller target or
-  /// another checkpoint interval, or another stage was declared later for its place. A larger
-  /// target makes a completed stage `declared` again. Throws std::invalid_argument when the id is
-  /// no SHA-256 or was recorded with other parameters, or when the parent was not declared.
+  /// Records each membership of the stage for which one of these is true: the store does not have
+  /// the membership; the store has it with a smaller target or another checkpoint interval; another
+  /// stage was declared later for the place of the membership. A larger target makes a completed
+  /// stage `declared` again. Throws std::invalid_argument when the id is not a SHA-256 or was
+  /// recorded with other parameters, or when the parent was not declared.
   void declare_stage(const Stage& stage);
 
   /// Starts an attempt and returns its number, from 1. With `from_sha256` the attempt continues
   /// from this checkpoint of the run. `parent_checkpoint`, the initial state, is only recorded.
-  /// Throws NotFound when the run or the checkpoint is unknown, and ConcurrencyConflict when this
-  /// object or another program holds the run, when the run is completed, or when a later checkpoint
-  /// was recorded. With `fill` the run must be completed: the attempt records missing checkpoints
-  /// before the last one, and completes the run again.
+  /// `fill` is for a run that is already completed: the attempt records missing checkpoints before
+  /// the last one, and then completes the run again. Throws NotFound when the run or the checkpoint
+  /// is unknown, and ConcurrencyConflict when this object or another program holds the run. Without
+  /// `fill`, also throws ConcurrencyConflict when the run is completed or a later checkpoint was
+  /// recorded; with `fill`, when the run is not completed.
   std::uint64_t start_stage(const std::string& id, const nlohmann::json& host,
                             const std::optional<std::string>& from_sha256 = std::nullopt,
                             const std::string& parent_checkpoint = "", bool fill = false);
@@ -142,8 +145,9 @@ class Store {
   /// Marks the checkpoint as rejected, so that it is not used. Its file is kept.
   void reject_checkpoint(const std::string& id, const std::string& sha256, const std::string& why);
 
-  /// The newest checkpoint before `before_step` that can be loaded. If `damage` is given, it gets
-  /// an error for each missing or damaged checkpoint, and a writable store rejects it.
+  /// The newest checkpoint before `before_step` that can be loaded. If `damage` is given, an
+  /// error is added to it for each missing or damaged checkpoint, and a writable store rejects each
+  /// of these checkpoints.
   std::optional<LoadedCheckpoint> newest_valid_checkpoint(
       const std::string& id, std::vector<std::string>* damage = nullptr,
       std::uint64_t before_step = UINT64_MAX);
@@ -151,7 +155,8 @@ class Store {
   /// Appends an event that changes no run. FigureGenerated has a stream such as
   /// "figure/drag/desk/S2", ReplayVerified and ReplayDiverged have the stream of the run, and
   /// CampaignSubmitted and JobQueued have kSubmissions.
-  /// Throws ConcurrencyConflict if `seen` is given and the stream does not have `seen` events.
+  /// Throws ConcurrencyConflict if `seen` is given and differs from the number of events in the
+  /// stream.
   void record(std::string_view stream, const NewEvent& event,
               std::optional<std::uint64_t> seen = std::nullopt);
 
@@ -176,8 +181,9 @@ class Store {
   /// The checkpoint, in any state, whose SHA-256 begins with `prefix`; nothing when there is none.
   /// Throws NotFound when there are several; the message lists the candidates.
   std::optional<CheckpointRecord> find_checkpoint(std::string_view prefix) const;
-  /// The bytes of a checkpoint file, whose SHA-256 is checked. Throws StoreDamaged, which names the
-  /// file. Throws FilePruned if the checkpoint was pruned, even if only after `record` was read.
+  /// The bytes of a checkpoint file, whose SHA-256 is checked. Throws FilePruned if the
+  /// checkpoint was pruned, before or after the caller got `record`. Throws StoreDamaged, which
+  /// names the file, if the file is missing for another reason or its size or SHA-256 differs.
   std::vector<std::byte> read_file(const CheckpointRecord& record) const;
   /// Decodes the file and compares the content with the record. Throws StoreDamaged with the path.
   Checkpoint load_checkpoint(const CheckpointRecord& record) const;
@@ -192,8 +198,8 @@ class Store {
 
   /// Drops the tables and derives them from the events.
   void rebuild();
-  /// Reports damage as findings. `against` is a head that was saved earlier; if the log does
-  /// not contain this head, the log is reported as damaged. Throws only when the machine fails.
+  /// Reports damage as findings; never throws StoreDamaged. `against` is a head that was saved
+  /// earlier; if the log does not contain this head, the log is reported as damaged.
   VerifyReport verify(const std::optional<Head>& against = std::nullopt) const;
 
   /// The checkpoints that prune() may delete. Excludes the initial states of stages that have not
@@ -209,10 +215,10 @@ class Store {
   void restore_checkpoint(const CheckpointRecord& record, const Checkpoint& checkpoint);
 
   /// Merges other stores into this one (merge.cpp). If `runs` is not empty, merges only manifests,
-  /// files of grains and these runs, and `runs` must include all parents. Throws NotFound when a
-  /// source is not a store, and MachineError while a process computes a run of this store. Throws
-  /// StoreDamaged, before anything is written, when a source is damaged, or when two stores hold
-  /// different states of one run at one step or different runs under one id.
+  /// files of grain positions and these runs, and `runs` must include all parents. Throws NotFound
+  /// when a source is not a store, and MachineError while a process computes a run of this store.
+  /// Throws StoreDamaged, before anything is written, when a source is damaged, or when two stores
+  /// hold different states of one run at one step or different runs under one id.
   std::vector<MergeReport> merge(const std::vector<std::filesystem::path>& sources,
                                  const std::set<std::string>& runs = {});
 

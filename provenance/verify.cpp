@@ -147,7 +147,8 @@ void check_objects(const std::vector<CheckpointRecord>& records,
       report.bytes += record.size;
       read_checkpoint(bytes, record, runs.at(record.run));
     } catch (const std::exception& problem) {
-      // It was pruned after the log was read. (A forged table is reported by compare_tables().)
+      // The checkpoint was pruned after the log was read. (If someone changed the table so that a
+      // damaged checkpoint seems pruned, compare_tables() has reported the difference.)
       if (!pruned && is_pruned_now(database, record)) continue;
       const std::string message = without_path(record.file, problem.what());
       const bool unread = dynamic_cast<const std::system_error*>(&problem) != nullptr;
@@ -225,9 +226,9 @@ VerifyReport Store::verify(const std::optional<Head>& against) const {
   } catch (const StoreDamaged& damage) {
     add_error(report, database_.name(),
               without_path(database_.name(), damage.what()) +
-                  (log_was_read ? "; the log is readable, so `shearcell merge` can copy its "
+                  (log_was_read ? "; the log is readable, so `shearcell merge` can copy all "
                                   "runs into a new store"
-                                : "; the rest was not read"));
+                                : "; the rest of the store was not read"));
   }
   if (!log_was_read) return report;  // without the log, the files cannot be checked
   check_reproduced(records, report);

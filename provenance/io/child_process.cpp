@@ -55,7 +55,7 @@ std::vector<char*> pointers_to(std::vector<std::string>& texts) {
   return pointers;
 }
 
-// A file in memory that collects the output of a program, of any length.
+// A file in memory that collects the output of a program. The output may have any length.
 Descriptor memory_file() {
   Descriptor file(memfd_create("output", MFD_CLOEXEC));
   if (!file.valid())
@@ -63,7 +63,7 @@ Descriptor memory_file() {
   return file;
 }
 
-// The text in the file. If it is longer than `most` bytes, only the beginning and "...".
+// The text in the file. If the text is longer than `most` bytes, returns its beginning and "...".
 std::string text_of(const Descriptor& file, std::size_t most = std::string::npos) {
   std::string text;
   std::array<char, 4096> part;

@@ -53,7 +53,8 @@ class ChildProcess {
   /// Waits until the program ends and returns exit_code().
   int wait();
 
-  /// Processor time that the program has used so far [s], without its child processes.
+  /// Processor time of the program [s]. While the program runs, this excludes the processes that
+  /// the program started. After the program has ended, this includes those for which it waited.
   double core_seconds() const;
 
  private:
@@ -71,8 +72,8 @@ struct ProgramOutcome {
 };
 
 /// Runs the program `words[0]` in `folder` and waits until it ends. Returns nothing when the
-/// program is not installed. Kills the program if it still runs after `seconds`. Throws
-/// ProgramError when the program cannot be started or was killed for this reason.
+/// program is not installed. Kills the program if it runs longer than `seconds`. Throws
+/// ProgramError when the program cannot be started, or was killed because it ran too long.
 std::optional<ProgramOutcome> run_program(const std::vector<std::string>& words,
                                           const std::filesystem::path& folder,
                                           const std::vector<std::string>& variables = {},

@@ -63,9 +63,9 @@ class NotOurs : public std::runtime_error {
 /// missing, a link or a pipe, or cannot be read.
 std::optional<std::string> read_plain(const std::filesystem::path& path, std::size_t limit);
 
-/// Throws NotOurs if `path` exists and is not a regular file that this program wrote. `ours` says
-/// this from the first bytes of the file (at most 4096). Throws std::system_error when the type of
-/// the file cannot be determined.
+/// Throws NotOurs if `path` exists and is not a regular file that this program wrote. `ours` gets
+/// the first bytes of the file (at most 4096) and returns whether this program wrote the file.
+/// Throws std::system_error when the type of the file cannot be determined.
 void require_ours(const std::filesystem::path& path,
                   const std::function<bool(std::string_view)>& ours);
 
