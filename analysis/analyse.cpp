@@ -132,7 +132,7 @@ std::vector<Provider> packing_providers() {
                                .whole = true,
                                .of_wall_grains = -1}),
                     of_grains("crystallite", "1",
-                              "the grain's crystallite, numbered by lowest grain id; 0 = none",
+                              "crystallite's number (1, 2, ... by lowest grain id); 0 = none",
                               "crystallites", {.whole = true, .of_wall_grains = -1})},
        .compute = grains_of}};
 }

@@ -107,7 +107,7 @@ Fit fitted(CensoredValues values, std::span<const double> x, double t,
            Distribution distribution = normal) {
   const auto n = static_cast<double>(values.size());
   const double slope = x.empty() ? 0 : 1;
-  Eigen::VectorXd y(std::ssize(values)), weight(y.size());  // mu = value * weight + constant
+  Eigen::VectorXd y(std::ssize(values)), weight(y.size());  // mean of y: value * weight + constant
   std::ranges::transform(values, y.begin(), &CensoredValue::value);
   std::ranges::copy(x, weight.begin());
   const auto centred = [n](Eigen::VectorXd& numbers) {  // shifts and scales to mean 0, variance 1
@@ -155,8 +155,8 @@ std::vector<double> plain(CensoredValues values) {
   return numbers;
 }
 
-/// Residuals (y - mean) / sigma, shifted so that they have zero mean. For a censored value the
-/// expectation value of the residual is used.
+/// Residuals (y - mean) / sigma, shifted so that they have zero mean. For a censored value, the
+/// expected residual of a true value above the limit is used.
 Eigen::VectorXd residuals(CensoredValues values, const Fit& fit) {
   Eigen::VectorXd found(std::ssize(values));
   std::ranges::transform(values, found.begin(), [&fit](const CensoredValue& one) {

@@ -35,7 +35,8 @@ Text operator+(Text first, const Text& second);
 /// letters are italic, and `_` or `^` lowers or raises the next character or the text in braces.
 Text formula(std::string_view text);
 
-/// A number, a whole number, text, or empty (not measured, or the error of a single run).
+/// A number, a whole number, text, or empty. A cell is empty if its value was not measured, or if
+/// it is a standard error and there is only one run.
 struct TableCell : std::variant<std::monostate, double, std::int64_t, std::string> {
   using variant::variant;
   TableCell(std::size_t count) : variant(static_cast<std::int64_t>(count)) {}  // NOLINT
@@ -74,7 +75,7 @@ struct Axis {
 struct ChartPoint {
   double x = 0;
   double y = 0;
-  std::optional<double> x_error = std::nullopt;  ///< standard error, only for readers of the data
+  std::optional<double> x_error = std::nullopt;  ///< standard error; given as data, not drawn
   std::optional<double> y_error = std::nullopt;  ///< half of the bar or band
   std::optional<double> runs = std::nullopt;     ///< number of runs averaged in y
 };
@@ -90,9 +91,9 @@ struct Series {
   bool band = false;         ///< errors of y are drawn as a band
   bool thin = false;         ///< a thin line, for one run of many
   bool large = false;        ///< larger points, which stay visible around smaller points
-  std::string variant = {};  ///< name of the curve's variant in the table; "": no such variant
+  std::string variant = {};  ///< name of the curve's variant in the table; "": no variant
   std::vector<ChartPoint> points = {};
-  /// Number of independent packings in each mean; 0 if the points come from different runs.
+  /// Number of independent packings in the curve; 0 if each point is a mean over other runs.
   std::size_t runs = 0;
   double shift = 0;  ///< added to x in the drawing, so that points with equal x stay visible
 };
@@ -156,14 +157,14 @@ std::string to_csv(const Table& table, Digits digits = Digits::enough);
 /// An array with one object for each row; the keys are in the order of the columns.
 nlohmann::ordered_json to_json(const Table& table);
 
-/// The points of one series that have finite x and y, without infinite errors of y. Series::shift
-/// is not added.
+/// The points of one series that have finite x and y. If the error of y is infinite, only the error
+/// is left out. Series::shift is not added.
 std::vector<ChartPoint> points_of(const Series& series);
 
 /// Adds the number of runs per point, such as "(3 to 5 runs)", to the title of each series in which
-/// this number varies or is less than Series::runs. Readers need this number, since a mean may
-/// change along a curve only because other runs contribute to it. If all series have the same
-/// numbers, the caption gives them once.
+/// this number varies or is less than Series::runs. Readers need this number: if other runs
+/// contribute to the next point, the mean can change although no run does. If all series have the
+/// same numbers, the caption gives them once.
 void name_run_counts(Table& table);
 
 /// Number of significant digits for values from `low` to `high`: 9, or more (up to 17) if needed to

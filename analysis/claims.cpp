@@ -122,11 +122,12 @@ Verdict decided_by(const ClaimSpec& claim, const Claim& stated, RunGroup a, RunG
   return verdict;
 }
 
-/// A look (interim analysis) at n seeds uses the runs of the first n seeds that both sides have,
-/// after these have ended. Returns the verdict of the first look that decides the claim. If no
-/// looks are planned, there is one look, at all seeds of either side. Until a look decides, the
-/// verdict is undecided. Its numbers then use the seeds before the first unfinished seed. Seeds
-/// that no look includes are used only in the note. `planned`: the sides of Frame::pending.
+/// A look (interim analysis) at n seeds uses the runs of the first n seeds that both sides have. It
+/// is made when all these runs have ended. If no looks are planned, there is one look, at all seeds
+/// that at least one side has. Returns the verdict of the first look that decides the claim. Until
+/// then the verdict is undecided, and its numbers use the seeds before the first seed that still
+/// has a planned run. Seeds that no look includes are used only in the note. `planned`: the two
+/// sides with the planned runs (Frame::pending).
 Verdict at_looks(const ClaimSpec& claim, Claim stated, const ClaimSides& sides,
                  const ClaimSides& planned, const Frame& frame) {
   const auto seeds_of = [](std::initializer_list<RunGroup> groups) {
@@ -205,8 +206,9 @@ Verdict at_looks(const ClaimSpec& claim, Claim stated, const ClaimSides& sides,
   std::erase_if(begun, [&](std::uint64_t seed) { return std::ranges::count(seeds, seed) > 0; });
   if (begun.empty()) return verdict;
   const Verdict all = decided_by(claim, stated, a, b);
-  add_note(verdict.note, fmt::format("an unplanned look, using {} more than planned, gives: {}",
-                                     counted(begun.size(), "seed"), numbers_of(all)));
+  add_note(verdict.note,
+           fmt::format("an unplanned look (interim analysis), with {} more than planned, gives: {}",
+                       counted(begun.size(), "seed"), numbers_of(all)));
   return verdict;
 }
 

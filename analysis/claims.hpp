@@ -39,26 +39,28 @@ struct ClaimSpec {
   nlohmann::json where = nlohmann::json::object();
   /// A parameter. Each of its values gives a claim with an id like "S5a.onset@amplitude_rad=0.05".
   std::string for_each = {};
-  /// Parameters that select the runs of each side. The second is empty if the claim has one side.
+  /// For each side, the parameters that select its runs. The second object is empty if the claim
+  /// has only one side.
   std::array<nlohmann::json, 2> between = {nlohmann::json::object(), nlohmann::json::object()};
   std::optional<PublishedSpec> published = {};
-  /// Tolerance of the claim, in units of the measure; for waiting times, of log2(ratio of a to b).
-  /// If the margin is 0, the published number is an upper or lower bound.
+  /// Tolerance of the claim, in units of the measure. For waiting times it is the tolerance of
+  /// log2(ratio of a to b). A margin of 0 makes the published number an upper or lower bound.
   double margin = 0;
   bool relative = false;  ///< the margin limits the relative difference
   /// The claim as a sentence. If empty, the sentence follows from the keys. With `for_each:
   /// amplitude_rad`, for example, "{amplitude_rad}" is replaced by the amplitude.
   std::string statement = {};
   Relation is = Relation::same;
-  bool optional = false;               ///< no verdict if a group has no runs
+  bool optional = false;               ///< true: no verdict if a group has no runs
   std::string cannot_be_decided = {};  ///< why no number of runs can decide the claim, or ""
   /// True if a shipped manifest defines the claim, and the user's manifest lists its figure. If
-  /// problems_of_sides() finds a problem in such a claim, its verdict uses no runs. In any other
-  /// claim the problem is an error.
+  /// problems_of_sides() finds a problem in such a claim, the claim gets a verdict without runs
+  /// (undecided). In any other claim, such a problem is an error.
   bool listed = false;
 };
 
-/// Whether the claim has only one group of runs (a published number, or Estimator::one_side).
+/// Whether the claim has only one group of runs: it has a published number, or Estimator::one_side
+/// is true.
 bool has_one_side(const ClaimSpec& claim);
 
 /// The figure of the claim: `figure` if given, otherwise the id up to its first dot.
@@ -67,8 +69,9 @@ std::string figure_of(const ClaimSpec& claim);
 /// The groups of runs that a claim compares. A claim with one side has an empty second group.
 struct ClaimSides {
   std::array<std::vector<const FrameRun*>, 2> runs;
-  std::array<std::string, 2> names;  ///< names for use in sentences; "" if a side has all runs
-  bool lacks_one = false;            ///< a side has no runs
+  /// Names of the sides, for use in sentences; "" for a side that `between` does not restrict.
+  std::array<std::string, 2> names;
+  bool lacks_one = false;  ///< a side has no runs
 };
 ClaimSides sides_of(const ClaimSpec& claim, std::span<const FrameRun> runs);
 
@@ -80,7 +83,7 @@ std::vector<ClaimSpec> each_of(const ClaimSpec& claim, std::span<const FrameRun>
 Claim stated(const ClaimSpec& claim, const std::array<std::string, 2>& sides);
 
 /// One sentence for each reason why the sides cannot be compared. `planned`: whether the sides hold
-/// planned runs. If so, a missing run on a side is one of the reasons.
+/// planned runs. If so, a side without runs is one of the reasons.
 std::vector<std::string> problems_of_sides(const ClaimSpec& claim, const ClaimSides& sides,
                                            bool planned);
 

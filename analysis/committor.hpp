@@ -11,7 +11,7 @@
 
 namespace shearcell {
 
-/// Minimum size of a descendant [grains]. A control state has only smaller ones. [choice]
+/// Minimum size of a descendant [grains]. All crystallites of a control state are smaller. [choice]
 inline constexpr std::int32_t least_descendant = 3;
 /// The followed crystallite has grown if a descendant has at least this many grains. [choice]
 inline constexpr std::int32_t grown_size = 60;
@@ -20,7 +20,8 @@ inline constexpr std::size_t cycles_gone = 2;
 /// Lower limits of the size bins of followed crystallites: 3 to 4, 5 to 7, 8 to 12 and 13 to 20
 /// grains. In each state at most one crystallite of each bin is followed. [choice]
 inline constexpr std::int32_t followed_bins[] = {3, 5, 8, 13, 21};
-/// The descendants of this number of past cycles are used to recognize the next one. [choice]
+/// Descendants are recognized by the grains of the descendants in this number of earlier cycles, as
+/// followed() describes. [choice]
 inline constexpr std::size_t remembered_cycles = 3;
 
 /// Labels of the crystallites to follow: in each size bin, the one that has the lowest grain id.
@@ -30,7 +31,7 @@ std::vector<std::int32_t> followed_in(const CrystalliteMap& start);
 struct Followed {
   /// Grains in the largest descendant, for each cycle after the start; 0: no descendant.
   std::vector<std::int32_t> sizes = {};
-  /// True if another crystallite absorbed the followed one after the last cycle in `sizes`.
+  /// True if, after the last cycle in `sizes`, another crystallite absorbed the followed one.
   bool merged = false;
 };
 
@@ -41,8 +42,8 @@ struct Followed {
 /// descendant if it has at least `least_descendant` grains, has a remembered grain, and does not
 /// continue a foreign crystallite. A foreign crystallite X existed in the previous cycle and is no
 /// descendant. C continues X if C has more grains of X than remembered grains. The followed
-/// crystallite has merged if there is no descendant and one crystallite, which continues a foreign
-/// crystallite, has at least half of the grains of the last descendants.
+/// crystallite has merged if two conditions hold: there is no descendant, and at least half of the
+/// grains of the last descendants are in one crystallite that continues a foreign crystallite.
 Followed followed(std::span<const CrystalliteMap* const> maps, std::int32_t label);
 
 /// Outcome for a followed crystallite. `undecided`: the clone ends before the outcome is known.

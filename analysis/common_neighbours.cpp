@@ -99,7 +99,8 @@ int signature(const Bonds& bonds, std::size_t neighbour) {
          longest_chain(bonds, common);
 }
 
-// Numbers of neighbours with the signatures `first` and `second`; {0, 0} if any has a third one.
+// Numbers of neighbours with the signatures `first` and `second`; {0, 0} if a neighbour has another
+// signature.
 std::array<int, 2> count_signatures(std::span<const Neighbour> near, double cut, int first,
                                     int second) {
   const Bonds bonds = find_bonds(near, cut);
@@ -113,9 +114,10 @@ std::array<int, 2> count_signatures(std::span<const Neighbour> near, double cut,
 }
 
 // The lattice of a grain with these neighbours. FCC and HCP are recognized by the 12 nearest
-// neighbours, BCC by 14. The longest bond between neighbours is kCut times a length: the mean
-// distance of the 12 neighbours or, for BCC, the side of the cubic cell, from 8 first and 6 second
-// neighbours.
+// neighbours, BCC by 14. Two neighbours are bonded if their distance is at most kCut times a
+// length. For FCC and HCP this length is the mean distance of the 12 neighbours from the grain. For
+// BCC it is the side of the cubic cell, estimated from the distances of all 14 neighbours (8 first
+// and 6 second neighbours) from the grain.
 Lattice lattice_of(std::span<const Neighbour> near) {
   if (near.size() < 12) return Lattice::none;
   double mean = 0, side = 0;

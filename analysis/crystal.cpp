@@ -59,7 +59,7 @@ bool is_valid(const CrystalliteMap& map) {
          map.top > map.bottom;
 }
 
-/// Writes arrays of integers as little-endian bytes and real numbers as JSON numbers.
+/// Writes arrays of integers as little-endian bytes. Writes real numbers as JSON numbers.
 json packed_map(const MeasureInput& input) {
   const CrystalliteMap& map = input.analysis->crystallites;
   json centres = json::array();
@@ -92,8 +92,8 @@ void read_map(const json& result, Measures& measures) {
 }  // namespace
 
 double bond_order_q6(std::span<const VoronoiFace> faces, double surface) {
-  // Sums over the bonds of weight * Y_6m(x, y, z) / C. C is the coefficient of Y_6m: Y_6m / C is
-  // (x + iy)^m times a polynomial in z.
+  // sums[m]: weight * Y_6m(x, y, z) / C, summed over the bonds. C is the coefficient of Y_6m:
+  // Y_6m / C is (x + iy)^m times a polynomial in z.
   std::array<std::complex<double>, 7> sums{};
   for (const VoronoiFace& face : faces) {
     if (face.kind == NeighbourKind::wall_plane) continue;

@@ -91,7 +91,8 @@ Verdict conclude(const Claim& claim, const std::string& quantity, std::optional<
   if (no_scatter) {
     add_note(note, equal_sides
                        ? "the numbers of the two sides agree in every digit, usually because both "
-                         "sides are the same computation; this is no evidence that the sides agree"
+                         "sides are the same computation; this is no evidence for or against "
+                         "the claim"
                        : "the numbers have no scatter, so the interval has no width");
   }
   Verdict verdict =

@@ -33,10 +33,11 @@ struct Estimator {
   bool over_variants = false;      ///< a group of runs may contain several variants
   bool one_side = false;           ///< its claims have one group, even without a published number
   bool compares_variants = false;  ///< the group must contain several variants
-  std::string_view reference =
-      "0";  ///< what a claim with one group compares with, if not published
+  /// The number with which a claim with one group is compared if it has no published number.
+  std::string_view reference = "0";
   /// Returns a Scalar, which computes one number per run. The estimate is the mean of these numbers
-  /// or, for two groups, the difference of their means. If null, `decide` gives the verdict.
+  /// or, for two groups, the difference of their means. If this pointer is null, `decide` gives the
+  /// verdict.
   Scalar (*scalar)(const ClaimSpec& claim) = nullptr;
   /// Decides the claim if `scalar` is null. Group `b` is empty if the claim has only one group.
   Verdict (*decide)(const ClaimSpec& claim, const Claim& stated, RunGroup a, RunGroup b) = nullptr;
@@ -62,8 +63,9 @@ bool compares_waits(const ClaimSpec& claim);
 /// Decides the claim from the mean of `a` minus the mean of `b`. Runs that share a packing form
 /// pairs. Pairs are compared by Student's t, and runs without a partner are left out. If there are
 /// no pairs, the interval is Welch's. Runs that end before an event are censored (censored.hpp). A
-/// verdict needs least_runs runs or pairs. At least three quarters of the runs in each group must
-/// have a number and, if there are pairs, a partner: missing runs may bias the verdict. [choice]
+/// verdict needs least_runs runs or pairs. In each group, at least three quarters of the runs must
+/// have a number from `scalar` and, if there are pairs, a partner, because missing runs may bias
+/// the verdict. [choice]
 Verdict compare(const Claim& claim, const Scalar& scalar, RunGroup a, RunGroup b);
 
 /// Decides the claim from the mean over runs minus the published number.

@@ -22,9 +22,10 @@ struct FigureResult {
   std::vector<Verdict> verdicts;
 };
 
-/// `table`: uses the last checkpoint of each run of all experiments, without measures. `curves`:
-/// uses the runs of one experiment, with one curve for each variant. `groups`: uses the
-/// runs of one experiment and averages over variants with equal values of Figure::keys.
+/// `table`: uses the last checkpoint of each run of all experiments, and only measures that come
+/// from the log (ComputedFrom::record). `curves`: uses the runs of one experiment, with one curve
+/// for each variant. `groups`: uses the runs of one experiment and averages over variants with
+/// equal values of Figure::keys.
 enum class FigureForm { table, curves, groups };
 
 /// A figure that is computed in C++, or that consists of the plots and claims of a manifest.
@@ -40,7 +41,8 @@ struct Figure {
   /// First and last cycle that the figure uses. It uses all checkpoints within these cycles. If
   /// empty, the figure uses all cycles, but only the checkpoints at whole cycles.
   std::optional<std::array<std::uint64_t, 2>> within = {};
-  /// First and last cycle with measures that a simulation computes for the figure. Empty: all.
+  /// First and last cycle at which the figure needs the measures that a simulation computes
+  /// (ComputedFrom::simulation). Empty: all cycles.
   std::optional<std::array<std::uint64_t, 2>> simulated = {};
   /// The experiments whose runs the figure uses; empty: the experiment of its manifest.
   std::vector<std::string> of = {};

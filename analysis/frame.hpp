@@ -49,9 +49,10 @@ struct Frame {
   /// Planned runs that have not ended. Only their variants, seeds, names and parameters are used.
   std::vector<FrameRun> pending = {};
   /// Seeds of the experiments at this scale, in order. If empty, each verdict uses all runs in the
-  /// frame. A number n in `looks` plans a look (interim analysis) at the runs of the first n seeds
-  /// that have finished or planned runs.
+  /// frame.
   std::vector<std::uint64_t> seeds = {};
+  /// Number of seeds n of each planned look (interim analysis). Seeds without a finished or planned
+  /// run are skipped. The look uses the runs of the first n seeds that are left.
   std::vector<std::size_t> looks = {};
 
   Frame(std::vector<FrameRun> all = {}, std::vector<nlohmann::json> of = {})  // NOLINT
@@ -105,7 +106,8 @@ class NumberColumn {
 
 /// Whether a column has one number per run: it uses neither the cycle nor a checkpoint's measure.
 bool is_of_run(std::string_view column);
-/// Whether a column is a measure of a whole run. Its value differs between runs of one variant.
+/// Whether a column is a measure of a whole run. Unlike a parameter, such a measure differs between
+/// runs of one variant.
 bool is_measured_of_run(std::string_view column);
 /// Names of the providers that compute the measures in the columns.
 std::vector<std::string> providers_of(std::span<const std::string> columns);
@@ -121,11 +123,11 @@ const CheckpointMeasures* checkpoint_at(const FrameRun& run, double cycle);
 /// whole numbers must be equal.
 bool has_parameters(const FrameRun& run, const nlohmann::json& where);
 /// The runs whose parameters match `where`. If several experiments share a matching run, only the
-/// run of the first of them is returned.
+/// FrameRun of the first of these experiments is returned.
 std::vector<const FrameRun*> all_runs_with(const nlohmann::json& where,
                                            std::span<const FrameRun> runs);
-/// As all_runs_with(), but runs that `run --engine` added are left out if the other matching runs
-/// belong to only one variant.
+/// As all_runs_with(). But if the runs belong to several variants, and to exactly one variant
+/// without the runs that `run --engine` added, these added runs are left out.
 std::vector<const FrameRun*> runs_with(const nlohmann::json& where, std::span<const FrameRun> runs);
 
 /// Whether a value matches `wanted`, which is a value, a list of values or a range.
@@ -137,13 +139,14 @@ std::map<double, std::vector<const FrameRun*>> runs_by(std::span<const FrameRun>
                                                        const std::string& parameter);
 std::size_t count_variants(RunGroup runs);
 std::set<std::string_view> stage_ids(RunGroup runs);
-/// The name of the variant of the runs; "" if they have no name or belong to several variants.
+/// The name of the variant that all runs belong to; "" if it has no name, or if the runs do not
+/// belong to one variant.
 std::string shared_name(RunGroup runs);
 
 /// Id of the packing from which the run started; without a packing, id of the run. Runs with the
 /// same packing are not independent.
 const std::string& packing_of(const FrameRun& run);
-/// Groups the runs by packing_of(), in the order of `group`.
+/// The runs of each packing (packing_of()). by_packing() keeps the order of the runs in `group`.
 using PackingGroups = nlohmann::ordered_map<std::string, std::vector<const FrameRun*>>;
 PackingGroups by_packing(RunGroup group);
 /// Returns, for each packing, the mean of the values of its runs. `values` has one value for each

@@ -105,7 +105,7 @@ std::vector<std::string> ticks_of_decades(const Extent& data) {
   return ticks;
 }
 
-/// Width and height of a drawing and its legend [px], and the number of columns of the legend.
+/// Size of a drawing, including its legend [px], and the layout of the legend.
 struct Layout {
   int width = column_width;
   int height = chart_height;
@@ -167,7 +167,8 @@ class Script {
     if (!chart_.letter.empty()) {
       add("set label '({})' at screen 0.015, screen 0.96 left front\n", chart_.letter);
     }
-    // gnuplot overestimates legend titles by about a quarter, which would give too few columns.
+    // gnuplot overestimates the width of legend titles by about a quarter. It would therefore use
+    // too few columns.
     const Layout layout = layout_of(chart_);
     add("set key maxcols {} width -{}\n", layout.columns, layout.longest / 4);
     add("set xlabel {}\nset ylabel {}\n", literal(label_of(chart_.x)), literal(label_of(chart_.y)));
@@ -234,7 +235,7 @@ class Script {
     add("set {0}tics {1}\nset format {0} '%.{2}f'\n", name, digits(step), decimals);
   }
 
-  /// Sets the ranges of both axes. gnuplot places each end that is not fixed a little beyond the
+  /// Sets the ranges of both axes. If an end is not fixed, gnuplot places it a little beyond the
   /// data, but ignores horizontal lines. If there are such lines, the script fixes both ends of y.
   void ranges() {
     const Axis &x = chart_.x, &y = chart_.y;
@@ -329,7 +330,8 @@ class Script {
     const double lowest = std::min(y_.low, chart_.y.low.value_or(y_.low));
     if (chart_.y.log) low = fmt::format("{0}>0?{0}:{1}", low, digits(lowest > 0 ? lowest : y_.low));
     // Error bars are drawn as arrows. The arrow heads are the caps, 2 px to each side. `yerrorbars`
-    // is not used, since gnuplot 5.4 paints white discs behind the points, which hide other curves.
+    // is not used, because gnuplot 5.4 then paints white discs behind the points, and these discs
+    // hide other curves.
     plots.push_back(
         fmt::format("$series{0} every {1} using 1:({2}):(0):($2+$4-({2})) with vectors heads size "
                     "screen {3},90 "

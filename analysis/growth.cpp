@@ -15,14 +15,16 @@ using BySize = Eigen::Array<double, GrowthCurve::largest, 1>;
 using FromSize = Eigen::Matrix<double, GrowthCurve::largest, GrowthCurve::largest>;
 
 /// Columns of GrowthCurve::Sums: moments 0 to 2 of the number of crystallites, moments 0 and 1 of
-/// the excess (growing minus shrinking ones), and the excess summed from this size upwards.
+/// the excess (growing minus shrinking crystallites), and the excess summed over the sizes from
+/// that of the row upwards.
 enum Column : Eigen::Index { all_0, all_1, all_2, excess_0, excess_1, tail };
 
 double log_size(Eigen::Index k) {
   return std::log(static_cast<double>(k + 1));
 }
 
-/// Turns counts by size (columns) into weighted moments of ln(size) about each size (rows).
+/// Matrix that turns counts by size into weighted moments of ln(size). A column belongs to the size
+/// of the counted crystallites, a row to the size about which the moment is taken.
 const FromSize& moment(int power) {
   static const std::array<FromSize, 3> all = [] {
     std::array<FromSize, 3> made;
@@ -39,7 +41,7 @@ const FromSize& moment(int power) {
   return all[static_cast<std::size_t>(power)];
 }
 
-/// Smoothed delta_rho for each row of the sums; constant if all crystallites have one size.
+/// Smoothed delta_rho for each row of the sums; constant if all crystallites have the same size.
 template <class Sums>
 auto smooth(const Sums& sums) {
   const auto n = sums.col(all_0), x = sums.col(all_1), xx = sums.col(all_2);
@@ -49,7 +51,8 @@ auto smooth(const Sums& sums) {
 }
 
 /// The size that GrowthCurve::critical_size() defines; infinity if there is none. Minus infinity if
-/// delta_rho > 0 at size 1 and the excess of all sizes exceeds the excess above each rise.
+/// delta_rho > 0 at size 1 and the excess summed over all sizes is positive and at least as large
+/// as the excess summed over the sizes above any rise of delta_rho through zero.
 template <class Sums>
 double rise(const Sums& sums) {
   const auto delta = smooth(sums);
@@ -111,13 +114,13 @@ void follow(const CrystalliteMap& now, const CrystalliteMap& later, GrowthBySize
     if (l == later.grain.size()) break;
     if (later.grain[l] == now.grain[k]) ++shared[{now.label[k], later.label[l]}];
   }
-  struct Outcome {
-    std::int32_t larger = 0, same = 0, smaller = 0;  // grains in crystallites of these sizes
+  struct Outcome {                                   // of a crystallite of `now`
+    std::int32_t larger = 0, same = 0, smaller = 0;  // grains, by size of later crystallite
     std::int32_t most = 0;                           // grains shared with crystallite `end`
-    std::size_t end = 0;                             // later crystallite with most shared grains
+    std::size_t end = 0;                             // later crystallite that shares most grains
   };
   std::vector<Outcome> fates(now.size.size());
-  struct Origin {
+  struct Origin {                     // of a crystallite of `later`
     std::int32_t most = 0, size = 0;  // grains shared with the main earlier crystallite; its size
   };
   std::vector<Origin> origins(later.size.size());

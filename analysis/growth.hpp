@@ -15,14 +15,16 @@
 
 namespace shearcell {
 
-/// What happened to the crystallites of one size. A crystallite is counted at most once. A
-/// crystallite that keeps its size is not counted: most of its grains stay in one of equal size.
+/// What happened to the crystallites of one size. A crystallite is counted at most once. It is not
+/// counted if it keeps its size: most of its grains are later in a crystallite of the same size.
 struct GrowthCount {
-  std::size_t grew = 0;  ///< more than half of the grains are in larger crystallites
-  /// Like `grew`, but a larger crystallite contributed the most grains to the later crystallite.
+  std::size_t grew = 0;  ///< more than half of its grains are later in larger crystallites
+  /// Like `grew`, but another crystallite, which was larger, contributed the most grains to the
+  /// later crystallite.
   std::size_t absorbed = 0;
-  std::size_t shrank = 0;    ///< more than half of its grains are later in smaller crystallites
-  std::size_t vanished = 0;  ///< not in `shrank`, but most grains are in smaller or no crystallites
+  std::size_t shrank = 0;  ///< more than half of its grains are later in smaller crystallites
+  /// More than half of its grains are later in smaller crystallites or in none; not in `shrank`.
+  std::size_t vanished = 0;
 
   std::size_t larger() const { return grew + absorbed; }     ///< "growing" in the supplement
   std::size_t smaller() const { return shrank + vanished; }  ///< "shrinking" in the supplement
@@ -30,7 +32,7 @@ struct GrowthCount {
   bool operator==(const GrowthCount&) const = default;
 };
 
-/// Counts by size in grains. Each size that was followed has an entry.
+/// Counts for each crystallite size [grains]. Each size of a followed crystallite has an entry.
 using GrowthBySize = std::map<std::int32_t, GrowthCount>;
 
 /// For each crystallite of `now`, adds to `counts` whether it had grown, shrunk, ... in `later`.
@@ -63,9 +65,10 @@ std::vector<GrowthRate> growth_rates(std::span<const GrowthBySize> runs,
 /// particular shape of the curve. All errors come from the bootstrap over runs.
 class GrowthCurve {
  public:
-  /// Standard deviation of the Gaussian in ln(size), which is about 20 % of the size. [choice]
+  /// Standard deviation of the Gaussian, in ln(size). It is about 20 % of the size. [choice]
   static constexpr double bandwidth = 0.2;
-  /// Larger sizes are left out, because their growth ends when the cell is one crystal. [choice]
+  /// Larger crystallites are left out, because their growth ends when the whole cell is one
+  /// crystal. [choice]
   static constexpr std::int32_t largest = 100;
 
   /// `background` is subtracted from delta_rho; crystallites grow where the difference is positive.
@@ -80,9 +83,10 @@ class GrowthCurve {
   /// least_bootstrap_runs runs, or if there is no such size. The interval comes from the bootstrap.
   /// An end of the interval is infinite if too many bootstrap selections have no such size.
   std::optional<Estimate> critical_size() const;
-  /// The size s that maximizes the number of growing minus shrinking crystallites with at least s
-  /// grains. At s the monotone (isotonic) fit of the unsmoothed delta_rho crosses zero (M. Ayer et
-  /// al., Ann. Math. Stat. 26, 641 (1955)). This checks critical_size(), but is less precise.
+  /// The size s at which the summed excess is largest: the number of growing minus the number of
+  /// shrinking crystallites, both with at least s grains. At s the monotone (isotonic) fit of the
+  /// unsmoothed delta_rho crosses zero (M. Ayer et al., Ann. Math. Stat. 26, 641 (1955)). This
+  /// checks critical_size(), but is less precise.
   std::optional<Estimate> monotone_critical_size() const;
   /// 90 % interval of the critical size in repeated studies with `runs` runs.
   Interval repeated_critical_size(std::size_t runs) const;

@@ -30,7 +30,8 @@ std::vector<std::pair<double, double>> means_over_phi(const FrameRun& run,
   return means;
 }
 
-/// Straight lines join the means in the bins of phi and are integrated.
+/// The means in the bins of phi are joined by straight lines. The number is the mean of this curve
+/// over phi.
 Scalar over_phi(const ClaimSpec& claim) {
   const auto [low, high] = *claim.phi;
   const auto of = [low = low, high = high,

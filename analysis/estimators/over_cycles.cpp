@@ -12,8 +12,9 @@ namespace {
 
 using Points = std::span<const std::pair<double, double>>;  // cycle, value
 
-/// A run has the number if it has a checkpoint at each cycle of the range or, if `ends`, at the
-/// first and the last cycle. `name` and `cycles` are the number and its cycles, for sentences.
+/// The value of `statistic` for each run. It is defined if the run has a checkpoint at each cycle
+/// of the range or, if `ends` is true, at the first and the last cycle. `name` and `cycles`
+/// describe the value and its cycles in sentences.
 Scalar over_cycles(const ClaimSpec& claim, std::string name, std::string cycles,
                    double (*statistic)(Points), bool ends = false) {
   const auto first = static_cast<double>(claim.cycles->at(0));

@@ -50,7 +50,9 @@ Verdict decide_slope(const ClaimSpec& claim, const Claim& stated, RunGroup runs,
 
 const Estimator slope_against = {
     .name = "slope",
-    .meaning = "slope of one number per run as a function of the run's first value of `against`",
+    .meaning =
+        "slope of a line through one point per run: x is the run's first value of `against`, "
+        "y is the run's value of `compare`",
     .key = "against",
     .of_run = true,
     .over_variants = true,

@@ -18,7 +18,7 @@ std::string wait_in_words(std::span<const Waiting> runs) {
                      std::ranges::count(runs, false, &Waiting::observed), runs.size());
 }
 
-/// The event whose cycles the claim compares, in words: "phi >= 0.64" or "the onset".
+/// A text for the event whose waiting times the claim compares: "phi >= 0.64" or "the onset".
 std::string event_of(const ClaimSpec& claim) {
   return claim.reaches ? fmt::format("{} >= {}", claim.compare, *claim.reaches) : "the onset";
 }
@@ -102,14 +102,16 @@ bool compares_waits(const ClaimSpec& claim) {
 
 const Estimator first_cycle_reached = {
     .name = "first_cycle",
-    .meaning = "log2 of a ratio of waiting times: cycles until the number is at least `reaches`",
+    .meaning =
+        "log2 of a ratio of waiting times; a waiting time is the first cycle at which "
+        "`compare` is at least `reaches`",
     .key = "reaches",
     .decide = decide_waits,
     .words = words_of_waits};
 
 const Estimator waiting_ratio = {
     .name = "waiting_ratio",
-    .meaning = "log2 of the ratio of the two sides' onset cycles; only for `onset_size_cycle`",
+    .meaning = "log2 of the ratio of the onset cycles of two groups; only for `onset_size_cycle`",
     .of_run = true,
     .decide = decide_waits,
     .words = words_of_waits};

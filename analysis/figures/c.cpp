@@ -70,9 +70,10 @@ struct AmplitudeGrowth : AmplitudeRuns {
   const GrowthAfter& published_bin() const { return after.at(published->n_bin); }
 
   std::optional<double> onset_cycle = {};  ///< median over runs
-  // Of published_bin(). Each is computed once, since each is a bootstrap.
+  // Results for published_bin(). They are stored because each one needs a bootstrap.
   std::optional<Estimate> monotone = {}, without_absorbed = {}, without_vanished = {};
-  Interval repeated = {};  ///< critical size in 90 % of repeated studies with published_runs runs
+  /// 90 % interval of the critical size in repeated studies with published_runs runs.
+  Interval repeated = {};
 };
 
 std::vector<AmplitudeGrowth> growth_by_amplitude(std::span<const FrameRun> runs) {
@@ -208,7 +209,8 @@ Table followed_table(std::span<const AmplitudeGrowth> all) {
 }
 
 /// Fig. 4(b) of the main text. In method 1 of section C the onset is the phi at which a curve
-/// reaches the critical size. A packing without crystallites counts as one grain, as in method 2.
+/// reaches the critical size. If a packing has no crystallites, its largest size is taken as 1, as
+/// in method 2.
 Table largest_table(const Frame& frame, std::span<const AmplitudeGrowth> all) {
   PlotSpec plot{.name = "C_largest",
                 .y = "max(1,largest_crystallite)",

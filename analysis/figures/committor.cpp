@@ -71,7 +71,8 @@ std::vector<const CrystalliteMap*> maps_of(const FrameRun& run) {
   return maps;
 }
 
-/// Adds each crystallite of a state, or one control, with its outcomes in the clones of the state.
+/// Adds a Subject with its outcomes in the clones of a state: one for each followed crystallite or,
+/// if the state is a control, one for the state.
 void add_state(RunGroup clones, Amplitude& to) {
   std::vector<std::vector<const CrystalliteMap*>> maps;  // of each clone
   for (const FrameRun* clone : clones) maps.push_back(maps_of(*clone));
@@ -133,7 +134,7 @@ std::optional<double> grown_share(const Fates& fates) {
   return static_cast<double>(fates.of(Fate::grown)) / static_cast<double>(decided);
 }
 
-/// Fraction of the clones of controls in which a crystallite grew; empty if there is no control.
+/// Among the clones of controls, the fraction in which a crystallite grew. Empty without controls.
 std::optional<double> background(const Amplitude& one) {
   return grown_share(sum_of(one.controls, chosen_rule));
 }
@@ -160,7 +161,10 @@ std::vector<GrowthBySize> by_packing_and_size(const Amplitude& one, std::size_t 
 /// Why no critical size is defined; "" if it is defined.
 std::string why_undefined(const Amplitude& one) {
   const std::optional<double> q = background(one);
-  if (!q) return "the fraction of controls that grow is unknown: every state has crystallites";
+  if (!q) {
+    return "there is no control (a state without crystallites), so the fraction of controls that "
+           "grow is unknown";
+  }
   const auto smallest =
       grown_share(sum_of(one.crystallites, chosen_rule, followed_bins[0], followed_bins[1]));
   if (*q <= rare || !smallest || *smallest > *q) return "";
@@ -177,7 +181,7 @@ std::optional<Estimate> half_size(const Amplitude& one, std::size_t rule) {
   return GrowthCurve(by_packing_and_size(one, rule), *background(one)).critical_size();
 }
 
-/// Each point is drawn from at least this number of clones with a known outcome. [choice]
+/// Each point combines at least this number of clones with a known outcome. [choice]
 constexpr std::size_t least_drawn = 8;
 
 Table probability_table(std::span<const Amplitude> all) {
@@ -260,7 +264,7 @@ Table sizes_table(std::span<const Amplitude> all) {
   return table;
 }
 
-/// The data of a verdict: one row for each crystallite or control, and each of cycles_without.
+/// The data of a verdict. Each crystallite or control has one row for each value in cycles_without.
 Table fates_of(std::initializer_list<const Amplitude*> amplitudes) {
   Table entered = entered_with({"size", "cycles_without"});
   entered.columns.insert(entered.columns.end(), fate_columns.begin(), fate_columns.end());

@@ -35,9 +35,9 @@ std::string name_of(const Group& group) {
   return fmt::format("A={} N={}", group.first, group.second);
 }
 
-/// A curve without points for each group. If there are several amplitudes, each has the same colour
-/// as in all figures. Otherwise each cell size has a colour. With Join::none, the points of the
-/// groups in a bin of phi are shifted so that they do not overlap.
+/// A curve without points for each group. If there are several amplitudes, each amplitude has its
+/// own colour, which is the same in all figures. Otherwise each cell size has its own colour. With
+/// Join::none, the points of the groups in a bin of phi are shifted so that they do not overlap.
 std::map<Group, Series> series_by(const Groups& groups, Join join) {
   std::map<Group, Series> series;
   std::set<double> amplitudes;
@@ -135,7 +135,8 @@ double exponent_of_walls(std::span<const FrameRun> runs, Region region) {
 }
 
 /// The verdict on the claim that the rate is proportional to the number of grains (exponent 1). The
-/// margin is (1 - exponent_of_walls()) / 2. Empty if it is not positive, or if all N are equal.
+/// margin is (1 - exponent_of_walls()) / 2. Empty unless the margin is positive and N has
+/// several values.
 std::vector<Verdict> rate_follows_volume(std::span<const FrameRun> runs, Region region,
                                          const std::string& id, const std::string& text) {
   if (runs_by(runs, "grains").size() < 2) return {};

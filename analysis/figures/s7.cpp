@@ -26,9 +26,10 @@ constexpr std::size_t density_bins = 8;
 constexpr double inaccessible = 4;
 
 struct Places {
-  std::vector<std::vector<double>> packings;  ///< one list for each packing with nuclei
-  std::size_t runs = 0;                       ///< number of runs with nuclei
-  std::size_t count = 0;                      ///< number of nuclei in all packings
+  /// Positions of the nuclei: one list for each packing with nuclei.
+  std::vector<std::vector<double>> packings;
+  std::size_t runs = 0;   ///< number of runs with nuclei
+  std::size_t count = 0;  ///< number of nuclei in all packings
 };
 
 Places places_of(RunGroup runs, CellAxis axis) {

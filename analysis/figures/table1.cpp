@@ -72,7 +72,7 @@ Found found_in(RunGroup runs, const Parameter& parameter) {
     for (const std::string& key : names_in(parameter.value)) {
       found.varied = found.varied || run->place.swept.contains(key);
     }
-    // A stiffening records the stiffness at each checkpoint.
+    // The checkpoints of a stiffening stage record the current stiffness.
     const double stiffness = run->checkpoints.back().measures.number("raised_stiffness_N_per_m");
     if (name == "stiffness_N_per_m" && std::isfinite(stiffness)) {
       found.take(stiffness);

@@ -200,8 +200,8 @@ TEST(Compare, EqualSidesAreNoEvidence) {
   EXPECT_FALSE(same.runs_needed);
   EXPECT_EQ(same.note,
             "4 pairs of runs that share a packing; the numbers of the two sides agree in every "
-            "digit, usually because both sides are the same computation; this is no evidence that "
-            "the sides agree");
+            "digit, usually because both sides are the same computation; this is no evidence for "
+            "or against the claim");
   Runs constant = group(4, 0);
   for (FrameRun& run : constant) {
     for (CheckpointMeasures& checkpoint : run.checkpoints) checkpoint.measures.numbers["phi"] = 0.5;
@@ -444,7 +444,9 @@ TEST(PlannedLooks, RunsOfOtherSeedsAreAnUnplannedLook) {
   const Verdict verdict = at_looks(frame);
   EXPECT_EQ(verdict.ruling, Ruling::agrees);
   EXPECT_EQ(verdict.runs, 6U);
-  EXPECT_TRUE(has(verdict.note, "an unplanned look, using 4 seeds more than planned, gives: 0.04"));
+  EXPECT_TRUE(
+      has(verdict.note,
+          "an unplanned look (interim analysis), with 4 seeds more than planned, gives: 0.04"));
 }
 
 TEST(PlannedLooks, TheLastOneIsFinalEvenIfItDecidesNothing) {
@@ -453,7 +455,8 @@ TEST(PlannedLooks, TheLastOneIsFinalEvenIfItDecidesNothing) {
   EXPECT_EQ(verdict.runs, 3U);
   EXPECT_FALSE(verdict.runs_needed);
   EXPECT_TRUE(has(verdict.note, "the last planned look has not decided the claim"));
-  EXPECT_TRUE(has(verdict.note, "an unplanned look, using 3 seeds more than planned, gives: "));
+  EXPECT_TRUE(has(verdict.note,
+                  "an unplanned look (interim analysis), with 3 seeds more than planned, gives: "));
 }
 
 TEST(PlannedLooks, UseSeedsThatBothSidesHave) {
