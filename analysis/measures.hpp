@@ -86,8 +86,8 @@ struct CycleEnergies {
   double work_of_walls = 0, dissipation = 0, stored = 0;
 };
 
-/// What providers know about the run of a checkpoint. The runner fills it in, since analysis does
-/// not depend on manifests and protocols (experiments/runner/measure.hpp).
+/// What providers know about the run of a checkpoint. The runner (experiments/runner/measure.hpp)
+/// fills it in, since analysis does not depend on manifests and protocols.
 struct RunFacts {
   nlohmann::json parameters = {};   ///< values by their keys in a manifest
   std::optional<Drive> drive = {};  ///< only of a shear
@@ -126,10 +126,11 @@ struct Provider {
   nlohmann::json parameters = nlohmann::json::object();  ///< settings on which the results depend
   std::vector<Measure> measures = {};  ///< either all are per-grain measures, or none is
   /// Returns an object with a value for each measure, by name. A curve is {"x", "y"}; a measure of
-  /// each grain is an array. A measure is left out if the run lacks a checkpoint or the shear that
-  /// the measure needs.
+  /// each grain is an array. A measure that cannot be computed is left out, for example because the
+  /// run has no earlier checkpoint, or because the stage is not a shear.
   std::function<nlohmann::json(const MeasureInput& input)> compute = {};
-  std::uint64_t cycles_back = 0;  ///< needs a second checkpoint, this many cycles earlier; 0: no
+  /// If not 0, the provider needs a second checkpoint, this many cycles earlier.
+  std::uint64_t cycles_back = 0;
   ComputedFrom from = ComputedFrom::checkpoint;
   std::string_view cost = {};  ///< computing time of a simulation, in words
   /// Reads and checks the parts of a result that are not measures.
@@ -159,7 +160,7 @@ inline constexpr const char* cost_provider = "cost";
 std::vector<const Measure*> all_measures(MeasureKind kind);
 /// The measure with this name and kind, or null. Kind `number` includes `count`.
 const Measure* find_measure(std::string_view name, MeasureKind kind = MeasureKind::number);
-/// The provider that computes `measure`, which must belong to a provider.
+/// The provider that computes `measure`. There must be such a provider.
 const Provider& provider_of(const Measure& measure);
 
 /// Encodes a result exactly, as CBOR (RFC 8949). Equal results have equal bytes.

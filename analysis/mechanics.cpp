@@ -15,7 +15,7 @@ namespace {
 
 using GrainMask = std::span<const std::uint8_t>;
 
-// At least four contacts hold a frictionless sphere in place.
+// A frictionless sphere needs at least four contacts to be held in place.
 constexpr int kHeld = 4;
 
 struct Touch {

@@ -113,8 +113,8 @@ std::vector<GrainPlace> places_of(const Checkpoint& checkpoint,
   return places;
 }
 
-/// Computes result_of(checkpoint, grains, motion since the earlier checkpoint); an empty result
-/// without this checkpoint.
+/// Computes result_of(checkpoint, grains, motion since the earlier checkpoint). The result is empty
+/// if there is no earlier checkpoint.
 auto from_motion(auto result_of) {
   return [result_of](const MeasureInput& input) -> json {
     const Checkpoint* earlier = input.earlier ? input.earlier() : nullptr;

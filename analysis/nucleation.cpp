@@ -33,7 +33,7 @@ Interval poisson_interval(std::size_t events) {
   return {events == 0 ? 0 : quantile(tail, 2 * n), quantile(1 - tail, 2 * n + 2)};
 }
 
-/// What one run contributes to the likelihood from one range of phi.
+/// Contribution of one run to the likelihood, in one range of phi.
 struct Share {
   double grains;  ///< N
   const std::string* packing;
@@ -59,7 +59,8 @@ struct Likelihood {
 };
 
 /// Adds the log-likelihood of one amplitude, maximized over the coefficients of ln c by Newton's
-/// method. The log-likelihood is concave in them. A step that would lower it is halved.
+/// method. The log-likelihood is concave in these coefficients. A Newton step that would lower the
+/// log-likelihood is halved.
 void add_likelihood(const std::vector<Share>& shares, double exponent, Likelihood& sum) {
   Eigen::Vector3d c = Eigen::Vector3d::Zero();
   const auto log_rate = [&](const Share& share) {
@@ -118,10 +119,10 @@ Likelihood likelihood(const Shares& amplitudes, double exponent) {
   return sum;
 }
 
-/// Whether the runs show how the rate depends on size. For some event there must be a smaller cell,
-/// and for some event a larger cell, at the same amplitude and nearly the same phi as the event.
-/// Cells are compared by N, because the number of interior grains differs slightly between seeds
-/// of one N.
+/// Whether the runs show how the rate depends on size: at least one event can be compared with a
+/// smaller cell, and at least one event with a larger cell, each at the same amplitude and nearly
+/// the same phi. Cells are compared by N, because the number of interior grains differs slightly
+/// between seeds of one N.
 bool is_bounded(const Shares& amplitudes) {
   bool larger = false, smaller = false;
   for (const auto& [amplitude, shares] : amplitudes) {

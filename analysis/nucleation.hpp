@@ -23,7 +23,7 @@ inline constexpr double nominal_height = 1.675;  ///< [L], supplement E
 
 /// Whether a nucleus counts in each cycle (`always`) or only in the cycle in which it is first seen
 /// (`first`). A crystallite of at least 15 grains is a new nucleus if fewer than half of its grains
-/// were in nuclei in any earlier cycle. A new nucleus of more than 25 grains is left out. [choice]
+/// were in such a crystallite before. A new nucleus of more than 25 grains is left out. [choice]
 enum class Seen { always, first };
 
 /// Positions along `axis` of the centres of mass of all crystallites of 15 to 25 grains in a run. x
@@ -42,8 +42,9 @@ struct DensityBin {
 /// packing. The bootstrap draws groups, so the groups must be independent.
 std::vector<DensityBin> density(std::span<const std::vector<double>> groups, std::size_t bins);
 
-/// The grains whose number and phi are used for a rate: at least 1.5 d (interior) or 4 d (core)
-/// from the wall surfaces (packing_fraction.hpp). The onset does not depend on the region.
+/// A nucleation rate is per grain of a region, as a function of the phi of this region. The grains
+/// of the region are at least 1.5 d (interior) or 4 d (core) from the wall surfaces
+/// (packing_fraction.hpp). The cycle of the onset does not depend on the region.
 enum class Region { interior, core };
 /// Name of the measure that counts the grains of the region.
 std::string grains_of(Region region);
@@ -63,14 +64,15 @@ struct NucleationRate {
 /// growing crystallite. Runs that begin with a critical crystallite are left out.
 std::vector<NucleationRate> nucleation_rates(RunGroup runs, Region region);
 
-/// Contribution of one run to a rate: the time before its onset while phi is in some range.
+/// Contribution of one run to the rate in one range of phi: the time that the run spends in this
+/// range before its onset.
 struct Exposure {
   double phi = 0;  ///< mean over the cycles
   double cycles = 0;
   double grain_cycles = 0;  ///< number of grains in the region, times cycles
   std::size_t onsets = 0;   ///< 0 or 1
 };
-/// Exposures of a run by range of phi. Range k begins at phi = k times `width`.
+/// The exposure of a run in each range of phi. Range k begins at phi = k times `width`.
 std::map<std::int64_t, Exposure> exposures_of(const FrameRun& run, Region region, double width);
 
 /// Width of the ranges of phi in which size_exponent() treats the rate as constant.
@@ -81,11 +83,11 @@ inline constexpr double rate_step = 0.0005;
 /// each amplitude. Since a run has at most one event, the interval comes from the profile
 /// likelihood (D. R. Cox and D. Oakes, Analysis of Survival Data, 1984). It contains all exponents
 /// for which the log-likelihood is within a limit of its maximum. If runs share a packing, the
-/// limit is multiplied by the ratio of the variance of the score between packings to that of
-/// independent runs, if this ratio is above 1 (L. Pace, A. Salvan, N. Sartori, Stat. Sinica 21, 129
-/// (2011)). Empty for fewer than least_runs packings. Also empty if N does not vary enough: for
-/// some event there must be a cell with fewer grains, and for some event a cell with more grains,
-/// at the same amplitude and nearly the same phi as the event.
+/// variance of the score between packings may exceed the variance for independent runs. The limit
+/// is then multiplied by the ratio of the two variances (L. Pace, A. Salvan, N. Sartori, Stat.
+/// Sinica 21, 129 (2011)). Empty for fewer than least_runs packings. Also empty if N does not vary
+/// enough: at least one event must be comparable with a cell of fewer grains, and at least one with
+/// a cell of more grains, each at the same amplitude and nearly the same phi.
 std::optional<Estimate> size_exponent(RunGroup runs, Region region,
                                       double level = confidence_level);
 

@@ -12,7 +12,7 @@ namespace shearcell {
 
 /// Whether the onset of a run was observed. A run is censored if its onset is before its first
 /// checkpoint (`before_start`) or after its last checkpoint (`never`). `unclear`: the onset is
-/// between these checkpoints, but the method finds no phi.
+/// between these checkpoints, but the method finds no phi at the onset.
 enum class Observed : std::uint8_t { yes, never, before_start, unclear };
 template <>
 inline constexpr auto kNames<Observed> = names_in_order<Observed>("observed", "never",

@@ -16,10 +16,10 @@ namespace shearcell {
 inline constexpr double rough_wall_surface = 0.375;
 /// Interior grains are at least this far from the wall surfaces [d]. Supplement C.
 inline constexpr double interior_distance = 1.5;
-/// Core grains are at least this far from the wall surfaces [d]. Closer to rough walls phi is lower
-/// and hardly any crystallite nucleates (experiments/results/README.md). [choice]
+/// Core grains are at least this far from the wall surfaces [d]. Closer to rough walls, phi is
+/// lower, and hardly any crystallite nucleates (experiments/results/README.md). [choice]
 inline constexpr double core_distance = 4;
-/// How far the wall surfaces lie inside the wall planes [d].
+/// Distance from each wall plane to the wall surface, towards the interior of the cell [d].
 inline double wall_surface(const Cell& cell) {
   return cell.wall_grains.empty() ? 0.0 : rough_wall_surface;
 }
@@ -41,7 +41,7 @@ Overlaps overlaps(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd
 
 /// Distance of each grain's centre from the nearest wall surface in x and y [d], measured along the
 /// normal of the wall. Without wall grains in the cell, the surface is the wall plane. With wall
-/// grains, it lies inside the plane, at a distance of `rough_wall_surface`.
+/// grains, the surface is this plane, moved by `rough_wall_surface` towards the interior.
 std::vector<double> distances_from_walls(const Cell& cell, const WallPose& pose,
                                          const Eigen::Matrix3Xd& grains);
 

@@ -64,14 +64,15 @@ std::filesystem::path draw_svg(const Table& table, const std::filesystem::path& 
   const TemporaryFolder apart;
   write_output(apart.path() / script, gnuplot_script(table));
   write_output(folder / script, gnuplot_script(table));
-  // gnuplot writes into memory: on a full disk it would truncate the file and exit with code 0.
+  // This link sends the drawing to standard output, which is kept in memory. If gnuplot wrote a
+  // file to a full disk, it would truncate the file and exit with code 0.
   std::filesystem::create_symlink("/dev/stdout", apart.path() / svg.filename());
   // With -d, gnuplot ignores the user's settings.
   const std::optional<ProgramOutcome> outcome =
       run_program({"gnuplot", "-d", script}, apart.path(), {fixed_date});
   const std::string fault = outcome ? fault_of("gnuplot", *outcome, svg, "<?xml", "</svg>")
                                     : "gnuplot is not installed (Debian package gnuplot-nox)";
-  if (!fault.empty()) {  // older drawings do not show this data
+  if (!fault.empty()) {  // older drawings show other data
     for (const auto& old : {svg, pdf}) std::filesystem::remove(old);
     throw AnalysisError(fault);
   }

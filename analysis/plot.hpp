@@ -26,12 +26,12 @@ void require_own_files(const Table& table, const std::filesystem::path& folder);
 
 /// Draws FOLDER/NAME.svg and keeps the script as FOLDER/NAME.gp (`gnuplot -d NAME.gp` draws it
 /// again). Returns the path of the SVG. The same table gives the same bytes with the same gnuplot.
-/// gnuplot draws into memory, so that several programs may write to one folder and no truncated
-/// file is left there.
+/// The drawing is written to FOLDER only after gnuplot has completed it in memory. Therefore
+/// several programs may write to one folder, and no truncated file is left there.
 ///
 /// Throws AnalysisError if gnuplot is not installed, fails or writes an incomplete drawing. The
-/// error names the package to install, or repeats gnuplot's message. The script is kept. Older
-/// drawings with this name are deleted, because they do not show this data.
+/// error names the package to install, or repeats gnuplot's message. After such an error
+/// the script is kept, and older drawings with this name are deleted, because they show other data.
 std::filesystem::path draw_svg(const Table& table, const std::filesystem::path& folder);
 
 /// Writes the drawing as PDF beside the SVG and returns its path. The same SVG gives the same bytes

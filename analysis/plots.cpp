@@ -172,7 +172,7 @@ struct Curve {
   json key;             ///< the keys that distinguish curves, and their values in this curve
   std::string variant;  ///< `key` as text; in the CSV with ';' instead of ','
   std::vector<Trace> traces = {};
-  std::size_t style = 0;  ///< index in PlotSpec::series; the number of its entries: none
+  std::size_t style = 0;  ///< index in PlotSpec::series; equal to its size if there is no style
   Text title = {};
   Look look = {};
 };
@@ -258,8 +258,8 @@ void average_x(std::vector<Curve>& curves) {
 // --- Group ---
 
 /// The curves of a panel. If PlotSpec::by is set, each value of `by` gets a curve. Otherwise each
-/// variant gets a curve, with one exception: if the plot has panels, or if x is one number per run,
-/// then variants that differ only in x or in the panel's parameter share a curve.
+/// variant gets a curve. But in plots with panels, and in plots whose x is one number per run,
+/// variants that differ only in x or in the panel's parameter share a curve.
 std::vector<Curve> curves_of(const PlotSpec& plot, std::span<const Selected> runs) {
   const bool by_variant =
       against(plot) != Against::number_of_run && plot.by.empty() && plot.panel.empty();
@@ -282,8 +282,8 @@ std::vector<Curve> curves_of(const PlotSpec& plot, std::span<const Selected> run
   return curves;
 }
 
-/// Sets the title of each curve: the name of its variant or, if it has several variants, of its
-/// key.
+/// Sets the title of each curve. In a plot without panels, a curve whose runs all belong to one
+/// named variant gets the name of this variant. Other curves get a title made from Curve::key.
 void set_titles(const PlotSpec& plot, const NameVariants& name, std::span<Curve> curves) {
   std::vector<json> keys;
   for (const Curve& curve : curves) keys.push_back(curve.key);
@@ -296,9 +296,10 @@ void set_titles(const PlotSpec& plot, const NameVariants& name, std::span<Curve>
   }
 }
 
-/// Sets Curve::style. A curve has no style if none matches, or if the style matches several curves.
-/// If PlotSpec::listed, styles are used only if PlotSpec::series contains every parameter in which
-/// the curves differ.
+/// Sets Curve::style to the first entry of PlotSpec::series that matches the curve. A curve gets no
+/// style if no entry matches it, or if another curve has the same first entry. With
+/// PlotSpec::listed, styles are used only if PlotSpec::series contains every parameter in which the
+/// curves differ.
 void set_styles(const PlotSpec& plot, std::span<Curve> curves) {
   std::vector<json> keys;
   for (const Curve& curve : curves) keys.push_back(curve.key);
@@ -306,7 +307,7 @@ void set_styles(const PlotSpec& plot, std::span<Curve> curves) {
     return std::ranges::any_of(plot.series,
                                [&](const SeriesSpec& one) { return one.where.contains(key); });
   });
-  std::vector<std::size_t> count(plot.series.size() + 1);  // curves with this style
+  std::vector<std::size_t> count(plot.series.size() + 1);  // number of curves by Curve::style
   for (Curve& curve : curves) {
     const auto style = std::ranges::find_if(plot.series, [&](const SeriesSpec& one) {
       return used && one.column.empty() && has_parameters(*curve.traces.front().run, one.where);
@@ -331,8 +332,8 @@ void set_look(const SeriesSpec& stated, std::string& colour, int& point) {
     point = curve_symbol(static_cast<std::size_t>(symbol) - 1);
 }
 
-/// The colours and symbols that the manifest states: in this plot, then in its other plots. If two
-/// plots state the same colour, the entries of the second plot do not hold in other plots.
+/// The colours and symbols that the manifest states: first those of this plot, then those of the
+/// manifest's other plots. A colour is left out if an earlier plot of this sequence states it.
 std::vector<StatedLook> stated_looks(const PlotSpec& plot, const Plots& others) {
   std::vector<StatedLook> looks;
   std::set<std::string> taken;  // colours that earlier plots state
@@ -438,7 +439,8 @@ std::vector<MeasureColumn> columns_of(const PlotSpec& plot) {
   return columns;
 }
 
-/// Mean over packings of values that may be censored. `runs` counts all packings in the mean.
+/// Mean over packings. Some of the values may be censored. RunStatistics::runs counts all packings,
+/// also those with censored values.
 RunStatistics mean_with_censored(RunGroup runs, std::span<const CensoredValue> values) {
   const std::vector<CensoredValue> means = over_packings(runs, values);
   const std::optional<Estimate> estimate = censored_mean(means);
@@ -447,7 +449,7 @@ RunStatistics mean_with_censored(RunGroup runs, std::span<const CensoredValue> v
   return {means.size(), estimate->value, estimate->spread / std::sqrt(n)};
 }
 
-/// Means over the runs of a curve at one cycle, in one bin of phi or at one x.
+/// Means over the runs of one curve, for one cycle, one bin of phi, or one x.
 struct Bin {
   double at = 0;  ///< depends on the plot: cycle, lower end of the bin of phi, or x
   RunStatistics x = {};
@@ -654,8 +656,8 @@ std::vector<ChartPoint> mean_points(Against what, std::span<const Bin> bins, std
 }
 
 /// If runs end at different cycles, the mean over the remaining runs would jump. The mean therefore
-/// ends where the first run ends, and the longer runs continue as thin lines. Returns whether the
-/// runs end at different cycles.
+/// ends where the shortest run ends, and the longer runs continue as thin lines. Returns whether
+/// the runs end at different cycles.
 bool follow_runs(const Curve& curve, double last_cycle, bool rms, Series& mean,
                  std::vector<Series>& single) {
   double first_end = infinite;
@@ -789,7 +791,8 @@ void require_different_titles(std::span<const Curve> curves) {
 /// Sets title and style of the curve of column k of y. `alone`: each column has only one curve.
 void name_y(const PlotSpec& plot, std::size_t k, bool alone, Series& series) {
   const auto [measure, name] = measures_of(plot)[k];
-  // The columns of a single curve differ in colour, the columns of several curves in symbol.
+  // If a panel has one curve, its columns differ in colour and symbol. In panels with several
+  // curves, the columns of one curve differ only in symbol.
   if (alone) series.colour = safe_colours[k % safe_colours.size()];
   series.point = alone ? curve_symbol(k) : series.point - static_cast<int>(k % 2);
   const Axis axis = axis_of(measure);
@@ -843,7 +846,7 @@ Table draw(const Panel& panel) {
     Series series = series_of(curve);
     series.band = what != Against::number_of_run;
     if (what == Against::curve) leave_out_symbol(curve, series);
-    // If x has one value for each run, points at different x come from different runs.
+    // Series::runs stays 0 if each run has one x, because the points then come from different runs.
     if (what != Against::number_of_run) series.runs = by_packing(runs_of(curve.traces)).size();
     for (std::size_t k = 0; k <= plot.drawn; ++k) {
       Series& drawn = table.chart.series.emplace_back(series);
@@ -1004,7 +1007,8 @@ FigureResult make_plot(const PlotSpec& plot, const Frame& frame, const NameVaria
   return result;
 }
 
-/// First and last cycle at which the parts need measures that a simulation computes. Empty: all.
+/// First and last cycle at which the parts need measures that a simulation computes. Empty if they
+/// need such measures at all cycles, or need no such measures.
 std::optional<std::array<std::uint64_t, 2>> simulated_by(std::span<const Figure> parts) {
   std::optional<std::array<std::uint64_t, 2>> hull;
   for (const Figure& part : parts) {

@@ -29,8 +29,8 @@ enum class LogAxes : std::uint8_t { none, x, y, xy };
 template <>
 inline constexpr auto kNames<LogAxes> = names_in_order<LogAxes>("none", "x", "y", "xy");
 
-/// The style of the curve whose variants have the parameters `where`. A member that is "" is
-/// replaced by a style that depends on the swept values (styles.hpp).
+/// The style of the curve whose variants have the parameter values in `where`. A member that is ""
+/// is replaced by a style that depends on the swept values (styles.hpp).
 struct SeriesSpec {
   nlohmann::json where;     ///< parameter -> value, for all variants of the curve
   std::string column = {};  ///< instead of `where`: the name of a column, if `y` has several
@@ -45,7 +45,8 @@ struct ColumnSpec {
   std::string name = {};  ///< name of the column, without unit; "": the measure's name
 };
 
-/// A black point on each curve, at the means of two measures of the whole run.
+/// A black point on each curve. Its coordinates are two measures of the whole run, averaged over
+/// the runs of the curve.
 struct MarkSpec {
   std::string x, y;
   std::string label = {};
@@ -54,7 +55,8 @@ struct MarkSpec {
 struct PlotSpec {
   std::string name;
   /// A measure of a checkpoint (a number or a curve), a measure of the whole run, or an expression
-  /// of parameters and measures. An expression cannot contain curves, or both kinds of measures.
+  /// of parameters and measures. An expression cannot contain a curve. It cannot contain
+  /// measures of a checkpoint together with measures of the run.
   std::string y;
   /// Selects runs by has_parameters(). The key "cycle" selects checkpoints.
   nlohmann::json where = nlohmann::json::object();
@@ -115,7 +117,7 @@ struct Selected {
 struct PlotRuns {
   std::vector<Selected> drawn = {};
   std::vector<const FrameRun*> subtracted = {};  ///< runs with the parameters PlotSpec::minus
-  std::vector<const FrameRun*> alone = {};  ///< left out, since no `subtracted` has their packing
+  std::vector<const FrameRun*> alone = {};  ///< left out: `subtracted` has no run of this packing
 };
 
 /// The runs of a list whose items have a member `run`.
@@ -130,7 +132,8 @@ std::vector<const FrameRun*> runs_of(const Items& items) {
 /// partner at the same cycle.
 PlotRuns selected_by(const PlotSpec& plot, std::span<const FrameRun> runs);
 
-/// The swept key over whose values a curve of these runs would average; "" if there is none.
+/// Returns a swept key that has several values within one curve of these runs, so that the curve
+/// would average over these values; "" if there is none.
 std::string averaged_by(const PlotSpec& plot, RunGroup runs);
 
 /// Returns readable names of variants. A variant is an object of keys and values.
@@ -141,7 +144,7 @@ using NameVariants = std::function<std::map<nlohmann::json, std::string>(
 /// ... with equal ranges. Runs are averaged in bins of phi if x is phi, at each cycle if x is
 /// another measure, and at one cycle if x is a parameter. A measure that is a curve is drawn at one
 /// cycle. `names` gives the titles of curves; without it a title has the form "fluid=still".
-/// Colours and symbols that `others`, the plots of the same manifest, state also hold in this plot.
+/// `others`: the plots of the same manifest. Their colours and symbols are also used in this plot.
 Figure plot_figure(const PlotSpec& plot, const NameVariants& names = {}, const Plots& others = {});
 
 /// Words for a message: "2 variants have fluid=still" or "no variant has fluid=still".

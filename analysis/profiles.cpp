@@ -14,7 +14,8 @@ namespace {
 
 using nlohmann::json;
 
-// Layer of each grain, counted from the bottom; `layers` for a grain near a side wall.
+// Index of the layer of each grain, counted from the bottom. A grain near a side wall belongs to no
+// layer; its index is `layers`.
 std::vector<std::size_t> layers_of(const Checkpoint& checkpoint, const WallPose& pose,
                                    std::size_t layers) {
   const double least = interior_margin(checkpoint.cell);
@@ -159,16 +160,17 @@ std::vector<Provider> profile_providers() {
        .compute = wall_distance_of},
       {.name = "sensitivity",
        .parameters = crystal_criteria(),
-       .measures = {{"crystalline_by_q6_window_percent", "%",
-                     "crystalline grains if |q6 - q6 of a lattice| may be up to `q6_window`", curve,
-                     "", "q6_window", "1"},
-                    {"crystalline_by_phi_local_percent", "%",
-                     "crystalline grains whose phi_local is at least `phi_local_threshold`", curve,
-                     "", "phi_local_threshold", "1"},
-                    {"largest_by_face", "1",
-                     "grains in the largest crystallite, as a function of the smallest face that "
-                     "connects two grains (area divided by the mean cell surface)",
-                     curve, "", "connecting_face", "1"}},
+       .measures =
+           {{"crystalline_by_q6_window_percent", "%",
+             "crystalline grains if the criterion is |q6 - q6 of a lattice| < `q6_window`", curve,
+             "", "q6_window", "1"},
+            {"crystalline_by_phi_local_percent", "%",
+             "crystalline grains if the criterion is phi_local > `phi_local_threshold`", curve, "",
+             "phi_local_threshold", "1"},
+            {"largest_by_face", "1",
+             "grains in the largest crystallite if grains are connected by a face of at least "
+             "`connecting_face` (area divided by the mean cell surface)",
+             curve, "", "connecting_face", "1"}},
        .compute = sensitivity_of}};
 }
 

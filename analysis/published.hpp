@@ -35,7 +35,8 @@ inline constexpr const char* growth_cannot_be_decided =
     "followed: with 1 cycle the size grows, with 20 cycles it falls, and with 5 cycles the "
     "ratio of the sizes is near 1, the threshold of the claim";
 
-/// Returns the nearest published amplitude. Its numbers also serve for `amplitude_rad`. [choice]
+/// Returns the published amplitude that is nearest to `amplitude_rad`. The numbers published for it
+/// are also used for `amplitude_rad`. [choice]
 inline const PublishedAmplitude& published_nearest(double amplitude_rad) {
   return *std::ranges::min_element(published_amplitudes, {}, [&](const PublishedAmplitude& one) {
     return std::abs(one.amplitude_rad - amplitude_rad);
@@ -49,9 +50,10 @@ inline constexpr double published_onset_phi = 0.646;
 inline constexpr std::int32_t nucleus_smallest = 15;
 inline constexpr std::int32_t nucleus_largest = 25;
 
-// Margins: two results agree if they differ by less than the margin. Margins of figures that C++
-// code computes are defined here, before the runs are made. Manifests define all other margins. The
-// uncertainty of a published critical size is part of the interval, not of the margin (README.md).
+// Margins: two results agree if they differ by less than the margin. The margins of the figures
+// in analysis/figures are defined here; all other margins are in manifests. Margins are chosen
+// before the runs are made. The uncertainty of a published critical size is part of the interval,
+// not of the margin (README.md).
 
 /// Margin of the critical size, relative to the published size. Published sizes of neighbouring
 /// amplitudes differ by a quarter.

@@ -30,7 +30,8 @@ json drive_of(const MeasureInput& input) {
           {"shear_rate_per_s", omega * rate / (sc.cosine * sc.cosine) + 0.0}};
 }
 
-/// Simulates the cycle before the checkpoint again, beginning at the checkpoint one cycle earlier.
+/// Repeats the simulation of the last cycle before the checkpoint. The simulation
+/// begins at the checkpoint that was recorded one cycle earlier.
 json ledger_of(const MeasureInput& input) try {
   if (!input.run->drive || input.record->step % cycle_steps(*input.run->drive) != 0) {
     return json::object();
@@ -70,9 +71,11 @@ json record_of(const MeasureInput& input) {
 std::vector<Provider> run_providers() {
   return {
       {.name = "drive",
-       .measures = {{"shear_strain", "1", "tan(theta), where theta is the tilt of the side walls"},
-                    {"shear_rate_per_s", "1/s",
-                     "rate of change of shear_strain; after a pause: when shear starts again"}},
+       .measures =
+           {{"shear_strain", "1", "tan(theta), where theta is the tilt of the side walls"},
+            {"shear_rate_per_s", "1/s",
+             "rate of change of shear_strain; at the end of a pause, the rate at which shear "
+             "starts again"}},
        .compute = drive_of,
        .from = ComputedFrom::record},
       // protocols/ledger.hpp defines the energy balance.
@@ -95,8 +98,8 @@ std::vector<Provider> run_providers() {
       {.name = "rest",
        .parameters = {{"rest_s", rest_s}},
        .measures = {{"phi_at_rest", "1",
-                     "volume fraction of interior grains (Eq. S4) after 0.1 s between walls "
-                     "that are held in place",
+                     "volume fraction of interior grains (Eq. S4), after the walls were held in "
+                     "place for 0.1 s",
                      MeasureKind::number, "phi at rest"}},
        .compute = rest_of,
        .from = ComputedFrom::simulation,

@@ -33,9 +33,9 @@ double least_squares_slope(std::span<const std::pair<double, double>> points);
 /// random numbers are counter-based, so the same input gives the same values.
 using RunStatistic = std::function<double(std::span<const std::size_t>)>;
 
-/// Standard error of a statistic: its standard deviation over the selections, multiplied by
-/// sqrt(runs / (runs - 1)). For a mean it agrees with over_runs(). Empty for fewer than two runs,
-/// or if fewer than half of the selections have a finite value.
+/// Standard error of a statistic: its standard deviation over the selections of the bootstrap,
+/// multiplied by sqrt(runs / (runs - 1)). For a mean it agrees with over_runs(). Empty for fewer
+/// than two runs, or if fewer than half of the selections have a finite value.
 std::optional<double> bootstrap_error(std::size_t runs, const RunStatistic& statistic);
 
 /// Confidence level of intervals unless a level is given. A 90 % interval that lies within a margin
@@ -60,7 +60,7 @@ struct Interval {
 struct Estimate {
   double value = 0;
   Interval interval;       ///< an end may be infinite
-  std::size_t runs = 0;    ///< number of runs or pairs; for 2 groups: of runs in the smaller one
+  std::size_t runs = 0;    ///< number of runs or pairs; with 2 groups, runs in the smaller group
   std::size_t groups = 1;  ///< 1, or 2 independent groups
   double spread = 0;       ///< with n runs per group the standard error would be spread / sqrt(n)
 };
@@ -85,7 +85,7 @@ std::optional<Estimate> difference_of_means(std::span<const double> a, std::span
 
 /// Estimates any statistic by the bootstrap, with the expanded percentile interval: T. C.
 /// Hesterberg, The American Statistician 69, 371 (2015). For a mean, this interval is as long as
-/// Student's interval. The statistic of a selection of runs may be infinite. A selection whose
+/// Student's interval. The statistic may be infinite. A selection (see RunStatistic) whose
 /// statistic is NaN widens the interval at both ends. Empty for fewer than least_bootstrap_runs, or
 /// if the statistic of all runs together is not finite.
 std::optional<Estimate> bootstrapped(std::size_t runs, const RunStatistic& statistic,
@@ -116,7 +116,8 @@ std::optional<SpreadBetween> variance_between(std::span<const std::vector<double
 
 /// Ratio a / b of two independent estimates of positive quantities. The lower error of ln(a / b) is
 /// the lower error of ln a and the upper error of ln b, added in quadrature. The upper error is
-/// computed from the other two errors: G. Y. Zou and A. Donner, Stat. Med. 27, 1693 (2008).
+/// computed likewise from the upper error of ln a and the lower error of ln b: G. Y. Zou and A.
+/// Donner, Stat. Med. 27, 1693 (2008).
 Estimate ratio(const Estimate& a, const Estimate& b);
 
 /// Number of runs per group (or of pairs) that are needed so that, with 90 % probability, the
@@ -157,11 +158,12 @@ std::optional<double> median_wait(std::span<const Waiting> runs);
 double log_rank(std::span<const Waiting> a, std::span<const Waiting> b);
 
 /// log2 of the ratio of the waiting times in `a` to those in `b`. If those in `b` are multiplied
-/// by this ratio, the log-rank statistic is zero. The interval holds all ratios that the log-rank
-/// test does not reject (A. A. Tsiatis, Ann. Stat. 18, 354 (1990)). The test uses Student's t with
-/// n + m - 2 degrees of freedom, because with the normal distribution only 86 to 88 % of the
-/// intervals from 4 to 12 runs per group would hold the true ratio. The interval is infinite if
-/// too few events were observed. Empty if there is no event, or a group has fewer than least_runs.
+/// by this ratio, the log-rank statistic is zero. The interval contains all ratios that the
+/// log-rank test does not reject (A. A. Tsiatis, Ann. Stat. 18, 354 (1990)). The test uses
+/// Student's t with n + m - 2 degrees of freedom, where n and m are the numbers of runs in `a` and
+/// `b`. With the normal distribution and 4 to 12 runs in each group, only 86 to 88 % of the 90 %
+/// intervals would contain the true ratio. The interval is infinite if too few events were
+/// observed. Empty if there is no event, or a group has fewer than least_runs.
 std::optional<Estimate> log2_wait_ratio(std::span<const Waiting> a, std::span<const Waiting> b,
                                         double level = confidence_level);
 

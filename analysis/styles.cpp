@@ -22,7 +22,8 @@ json values_of(const json& variant, std::span<const std::string> keys) {
   return values;
 }
 
-/// `count`: number of different sets of values. `rank`: index of one variant's set when sorted.
+/// `count`: number of different sets of values. `rank`: index of the variant's set of values if the
+/// different sets are sorted.
 struct Rank {
   std::size_t rank = 0;
   std::size_t count = 0;
@@ -35,7 +36,7 @@ Rank rank_of(const json& variant, std::span<const json> variants,
   return {static_cast<std::size_t>(below), all.size()};
 }
 
-/// Whether the variant agrees with `where` in all keys that it has.
+/// Whether the variant agrees with `where` in all keys that both have.
 bool may_have(const json& variant, const json& where) {
   return std::ranges::all_of(where.items(), [&](const auto& stated) {
     return !variant.contains(stated.key()) || is_within(variant[stated.key()], stated.value());

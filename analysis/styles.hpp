@@ -37,7 +37,7 @@ inline constexpr std::size_t curve_symbols = 10;
 struct Look {
   std::string colour = {};  ///< "#rrggbb"
   int point = 0;            ///< like Series::point
-  Join join = Join::line;   ///< of a curve without symbols: dashes if the colour is used twice
+  Join join = Join::line;   ///< without symbols, curves of one colour alternate: line, dashes
 };
 
 /// A colour or symbol that a manifest states for the curves with the parameters `where`.
@@ -64,24 +64,27 @@ std::vector<AmplitudeRuns> by_amplitude(std::span<const FrameRun> runs);
 
 /// Chooses the colour and symbol (Look) of each variant from the keys that vary in the frame. The
 /// rank of the first key's value decides the colour. The rank of the other values decides the
-/// symbol. The amplitudes of the supplement have the colours of amplitude_look(). Stated colours
-/// and symbols replace these, and no other variant has a stated colour.
+/// symbol. The amplitudes of the supplement have the colours of amplitude_look(). Colours and
+/// symbols of a StatedLook replace the chosen ones. A stated colour is not chosen for other
+/// variants.
 class Looks {
  public:
-  /// `shared`: keys in which the curves of one panel do not differ, for the rules on stated looks.
+  /// `shared`: keys that do not distinguish the curves of one panel. of() ignores them when it
+  /// decides whether a stated symbol belongs to a single curve.
   explicit Looks(const Frame& frame, std::vector<StatedLook> stated = {},
                  std::vector<std::string> shared = {});
 
   /// Colour and symbol of a curve. If all runs of the curve belong to one variant, the swept values
   /// of this variant decide. Otherwise `key` decides: the values that all runs of the curve share.
-  /// A stated symbol is used if no other curve of the panel has the parameters of its entry. A
-  /// stated colour is also used if all curves with these parameters would have the same colour.
+  /// If the curve has the parameters StatedLook::where, and all variants with these parameters
+  /// would have the same colour, the stated colour is used. The stated symbol is then used, too,
+  /// unless other curves of the panel have these parameters.
   Look of(RunGroup curve, const nlohmann::json& key) const;
 
  private:
   std::vector<nlohmann::json> variants_;
   std::vector<std::string> keys_;
-  std::vector<StatedLook> stated_;  ///< the first entry of a curve is used
+  std::vector<StatedLook> stated_;  ///< if several match a curve, the first is used
   std::vector<std::string> shared_;
 };
 

@@ -26,8 +26,9 @@ std::optional<std::size_t> runs_needed(const Estimate& estimate, double margin, 
   if (may_be_zero && (!planned || *planned > estimate.runs)) return planned;
   const double size = within ? std::abs(estimate.value) : estimate.value;
   const auto needed = runs_to_resolve(estimate, std::abs(size - margin), false);
-  // Estimate::spread is a mean over the lower and the upper half of the interval. If one half is
-  // much longer, `needed` may be too small. But an undecided claim needs at least one more run.
+  // Estimate::spread is computed from the mean length of the two parts of the interval, below and
+  // above the estimate. If one part is much longer, `needed` may be too small. But an undecided
+  // claim needs at least one more run.
   return needed ? std::max(*needed, estimate.runs + 1) : needed;
 }
 
@@ -63,8 +64,8 @@ std::string factor(double log2) {
   return fmt::format("{:.{}f}", value, value < 10 ? 1 : 0);
 }
 
-/// "0.0012, 90 % interval -0.0003 to 0.0027". For waiting times: "the first is 2.1 times later, 90
-/// % interval 1.3 times later to 3.4 times later".
+/// "0.0012, 90 % interval -0.0003 to 0.0027". For waiting times: "the first group is 2.1 times
+/// later, 90 % interval 1.3 times later to 3.4 times later".
 std::string estimate_with_interval(const Verdict& verdict) {
   const bool waits = !verdict.waits_for.empty();
   const auto text = [&](double value) {
@@ -77,7 +78,7 @@ std::string estimate_with_interval(const Verdict& verdict) {
   return fmt::format("{}, {:.3g} % interval {}",
                      !std::isfinite(*verdict.estimate)
                          ? "no finite value"
-                         : (waits ? "the first is " : "") + text(*verdict.estimate),
+                         : (waits ? "the first group is " : "") + text(*verdict.estimate),
                      100 * verdict.level, any_end ? text(low) + " to " + text(high) : text(low));
 }
 
@@ -171,8 +172,9 @@ std::string numbers_of(const Verdict& verdict) {
   std::string text =
       verdict.estimate ? estimate_with_interval(verdict) : std::string("not measured");
   const std::string times = factor(verdict.margin);
-  text += verdict.waits_for.empty() ? fmt::format(", margin {:.3g}", verdict.margin)
-                                    : ", margin: " + (times == "2.0" ? "twice" : times + " times");
+  text += verdict.waits_for.empty()
+              ? fmt::format(", margin {:.3g}", verdict.margin)
+              : ", margin: " + (times == "2.0" ? "2 times" : times + " times");
   text += fmt::format(", {}{}",
                       counted(verdict.runs, verdict.counted == Counted::pairs ? "pair" : "run"),
                       verdict.counted == Counted::runs_per_variant ? " per variant" : "");

@@ -17,16 +17,18 @@
 
 namespace shearcell {
 
-/// A claim of equality agrees or differs. A claim of a direction is supported or refuted. More runs
-/// may decide an undecided claim. No number of runs decides an undecidable claim.
+/// The ruling on a claim of equality is `agrees` or `differs`; on a claim of a direction it is
+/// `supported` or `refuted`. More runs may decide a claim that is `undecided`. No number of runs
+/// decides a claim that is `undecidable`.
 enum class Ruling { agrees, supported, differs, refuted, undecided, undecidable };
 template <>
 inline constexpr auto kNames<Ruling> = names_in_order<Ruling>("agrees", "supported", "differs",
                                                               "refuted", "undecided",
                                                               "cannot be decided");
 
-/// The range in which a claim expects the quantity: from -margin to margin (`same`), above the
-/// margin (`higher`) or below it (`lower`). For two variants the quantity is first minus second.
+/// The range in which a claim expects the quantity: from -margin to margin (`same`), above margin
+/// (`higher`) or below margin (`lower`, with a margin of 0 or less). For two variants the quantity
+/// is first minus second.
 enum class Relation : std::uint8_t { same, higher, lower };
 template <>
 inline constexpr auto kNames<Relation> = names_in_order<Relation>("same", "higher", "lower");
@@ -80,9 +82,10 @@ Ruling ruling_of(const Interval& interval, double margin, Relation claimed);
 
 /// The verdict that follows from the estimate's interval; undecided without an estimate. If the
 /// claim has a reason why it cannot be decided, the verdict is undecidable, with this reason.
-/// `runs_needed`: number of runs, above Estimate::runs, that decides an undecided claim with 90 %
-/// probability if the true value is 0 (Relation::same) or twice the margin. If the interval
-/// excludes 0, or if the runs should have sufficed, the true value is assumed to be the estimate.
+/// `runs_needed`: for an undecided claim, the total number of runs (more than Estimate::runs) that
+/// decides the claim with 90 % probability. The assumed true value is 0 for Relation::same, and
+/// twice the margin for other relations. If the interval excludes 0, or if the number found is at
+/// most Estimate::runs, the assumed true value is the estimate instead.
 Verdict decide(const Claim& claim, std::string quantity, const std::optional<Estimate>& estimate,
                std::size_t runs, std::string note, Table entered = {},
                Counted counted = Counted::runs);
@@ -93,7 +96,7 @@ std::map<Ruling, std::size_t> rulings_of(std::span<const Verdict> verdicts);
 /// The rulings in words, such as "1 agrees, 1 refuted"; "" without verdicts.
 std::string headline_of(const std::map<Ruling, std::size_t>& rulings);
 
-/// Sets the ruling to undecided, unless it is undecidable.
+/// Changes the ruling to `undecided`. The ruling `undecidable` is not changed.
 void withhold(Verdict& verdict);
 
 /// Joins the table Verdict::entered of each verdict into one table. The first column is the claim.
@@ -107,12 +110,12 @@ Table entered_table(std::span<const Verdict> verdicts);
 nlohmann::json to_json(std::span<const Verdict> verdicts);
 
 /// "0.0012, 90 % interval -0.0003 to 0.0027, margin 0.001, 6 runs per variant (24 needed)". For
-/// waiting times: "the first is 2.1 times later, 90 % interval 1.3 times later to 3.4 times
-/// later, margin: twice, 6 runs per variant".
+/// waiting times: "the first group is 2.1 times later, 90 % interval 1.3 times later to 3.4 times
+/// later, margin: 2 times, 6 runs per variant".
 std::string numbers_of(const Verdict& verdict);
 
 /// The quantity, numbers_of() and the note, as the terminal and the report print them:
-/// "cycle of the onset (log-rank test): the first is 2.1 times later, ...".
+/// "cycle of the onset (log-rank test): the first group is 2.1 times later, ...".
 std::string result_of(const Verdict& verdict);
 
 }  // namespace shearcell

@@ -44,9 +44,9 @@ struct SiteImage {
 struct alignas(64) Tetrahedron {
   std::array<std::int32_t, 4> vertex;     // index of each corner in point_; -1: at infinity
   std::array<std::int32_t, 4> neighbour;  // tetrahedron opposite to each corner
-  Eigen::Vector3d centre;                 // circumcentre, set if a corner is a grain
-  std::uint8_t beyond;                    // bit w is 1: the centre is on or beyond wall w
-  std::uint8_t edges_done;                // a bit for each edge whose face was measured
+  Eigen::Vector3d centre;   // circumcentre; set only if at least one corner is a grain
+  std::uint8_t beyond;      // bit w is 1: the centre is on or beyond wall w
+  std::uint8_t edges_done;  // a bit for each edge whose face was measured
 };
 
 constexpr std::array<std::array<std::uint8_t, 2>, 6> edges = {
@@ -64,7 +64,7 @@ std::size_t corner_of(const Tetrahedron& t, std::int32_t vertex) {
 /// triangulation.
 ///
 /// CGAL's predicates are exact. The triangulation is therefore correct for the stored positions,
-/// even if many sites share a plane or a sphere, and no bounded tetrahedron is flat. Circumcentres
+/// even if many sites share a plane or a sphere. No bounded tetrahedron is flat. Circumcentres
 /// are computed in doubles if an error bound allows it, otherwise in exact arithmetic. Tetrahedra
 /// with the same circumsphere thus have the same centre, and faces between them have no area except
 /// for rounding errors.
@@ -102,7 +102,8 @@ class Tessellation {
   /// Each corner of a cell is the centre of a sphere through the cell's site. The cell is correct
   /// if all these spheres lie within the margin. More images can only make cells smaller, so a
   /// margin as large as the present reach of the spheres is sufficient. If a cell extends to a
-  /// guard, the reach is far too large. So each pass at most doubles the margin.
+  /// guard, the reach is much larger than the margin that the cell needs. Therefore each pass at
+  /// most doubles the margin.
   VoronoiDiagram measure() {
     while (true) {
       reach_ = 0;
@@ -145,7 +146,8 @@ class Tessellation {
     return point_[static_cast<std::size_t>(vertex)];
   }
 
-  /// Adds all periodic images of sites that are less than `margin` outside [0, depth) in z.
+  /// Adds each periodic image of a site if the image is outside [0, depth) in z by less than
+  /// `margin`.
   void widen(double margin) {
     const auto is_new = [&](double distance) { return distance >= margin_ && distance < margin; };
     for (std::int32_t k = 1; (k - 1) * cell_.depth < margin; ++k) {
@@ -286,7 +288,7 @@ class Tessellation {
     }
   }
 
-  /// Measures the face of the edge between corners i and j of tetrahedron `start`.
+  /// Measures the face between the sites at corners i and j of tetrahedron `start`.
   void measure_face(std::size_t start, std::size_t i, std::size_t j) {
     const std::int32_t a = tetrahedra_[start].vertex[i];
     const std::int32_t b = tetrahedra_[start].vertex[j];
@@ -331,10 +333,11 @@ class Tessellation {
     } while (k != start);
   }
 
-  /// Clips a face at the walls in `beyond` and returns twice the vector area of the rest. A side of
-  /// the rest that lies on a wall is also a side of a wall face of both cells, and is added to the
-  /// areas of these wall faces. The area of a wall face is the integral of -z du along its border,
-  /// where u is the coordinate along the wall, normal to z. At the edges of the box du is 0.
+  /// Clips the face between a and b at the walls in `beyond`. Returns twice the vector area of the
+  /// remaining polygon. A side of this polygon that lies on a wall also borders the wall faces of
+  /// the cells of a and b. Its contribution is added to the areas of these two wall faces: the area
+  /// of a wall face is the integral of -z du along its border, where u is the coordinate along the
+  /// wall, normal to z. At the edges of the box du is 0.
   Eigen::Vector3d clip(std::size_t start, std::int32_t a, std::int32_t b, unsigned beyond) {
     polygon_.clear();
     walk_around(start, a, b, [&](const Tetrahedron& t, std::uint8_t) {

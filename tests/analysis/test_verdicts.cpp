@@ -111,8 +111,9 @@ TEST(Verdict, WaitsAreComparedInWords) {
   verdict.waits_for = "the onset";
   verdict.runs = 6;
   verdict.counted = Counted::runs_per_variant;
-  EXPECT_EQ(result_of(verdict),
-            "cycle of the onset (log-rank test): not measured, margin: twice, 6 runs per variant");
+  EXPECT_EQ(
+      result_of(verdict),
+      "cycle of the onset (log-rank test): not measured, margin: 2 times, 6 runs per variant");
   const auto words = [&](double estimate, double low, double high) {
     verdict.estimate = estimate;
     verdict.interval = {low, high};
@@ -124,16 +125,19 @@ TEST(Verdict, WaitsAreComparedInWords) {
   EXPECT_EQ(words(-infinity, -infinity, -4),
             "no finite value, 90 % interval unbounded to 16 times earlier");
   EXPECT_EQ(words(3, -1, infinity),
-            "the first is 8.0 times later, 90 % interval 2.0 times earlier to unbounded");
+            "the first group is 8.0 times later, 90 % interval 2.0 times earlier to unbounded");
   EXPECT_EQ(words(-3, -infinity, 1),
-            "the first is 8.0 times earlier, 90 % interval unbounded to 2.0 times later");
-  EXPECT_EQ(words(1, -infinity, infinity), "the first is 2.0 times later, 90 % interval unbounded");
+            "the first group is 8.0 times earlier, 90 % interval unbounded to 2.0 times later");
+  EXPECT_EQ(words(1, -infinity, infinity),
+            "the first group is 2.0 times later, 90 % interval unbounded");
   EXPECT_EQ(words(1, 0.5, 3),
-            "the first is 2.0 times later, 90 % interval 1.4 times later to 8.0 times later");
-  EXPECT_EQ(words(-1, -3, -0.5),
-            "the first is 2.0 times earlier, 90 % interval 8.0 times earlier to 1.4 times earlier");
-  EXPECT_EQ(words(0.1, -1, 1.5),
-            "the first is 1.1 times later, 90 % interval 2.0 times earlier to 2.8 times later");
+            "the first group is 2.0 times later, 90 % interval 1.4 times later to 8.0 times later");
+  EXPECT_EQ(
+      words(-1, -3, -0.5),
+      "the first group is 2.0 times earlier, 90 % interval 8.0 times earlier to 1.4 times earlier");
+  EXPECT_EQ(
+      words(0.1, -1, 1.5),
+      "the first group is 1.1 times later, 90 % interval 2.0 times earlier to 2.8 times later");
   verdict.margin = 1.585;
   verdict.note = "a note";
   EXPECT_TRUE(has(result_of(verdict), "margin: 3.0 times, 6 runs per variant; a note"));
