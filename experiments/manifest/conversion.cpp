@@ -165,7 +165,7 @@ std::optional<std::string> time_step_advice(const TimeStep& step, const std::str
   return fmt::format("{}: the time step {:.3g} s is {:.3g} times the stability limit ({} {:g}). {}",
                      key, step.seconds, step.over_stability_limit, large ? "above" : "below",
                      large ? too_large : too_small,
-                     large ? "The fastest vibrations are wrong by more than 10 %"
+                     large ? "The frequency of the fastest vibrations is wrong by more than 10 %"
                            : "A larger step saves time and changes measures by less than the "
                              "scatter between seeds");
 }

@@ -31,7 +31,7 @@ inline constexpr double kMostPauseSteps = 1e9;
 /// Duration of a pause in time steps of the shear, not rounded.
 double pause_time_steps(const Parameters& parameters);
 
-/// Length of the stage after settling: number of cycles or, for `stiffen`, number of stiffnesses.
+/// Length of the stage that follows settling: number of cycles or, for `stiffen`, of stiffnesses.
 std::uint64_t target_cycles(const Parameters& parameters);
 
 Geometry geometry(const Parameters& parameters);
@@ -47,13 +47,14 @@ double stability_limit_s(const Parameters& parameters);
 bool depends_on_pressure_at(const Parameters& parameters);
 
 /// Whether the pressure under a moving bottom wall can carry the grains' weight: P d^2 > 1.2 (h/d)
-/// m g, for 1.2 grains per d^3 and the nominal height h. Returns true, too, if the top wall moves,
-/// because it lifts no grains, and for `pressure_at: top`, where the load includes their weight.
+/// m g, for 1.2 grains per d^3 and the nominal height h. Also returns true if the top wall moves,
+/// because the top wall lifts no grains. Also returns true for `pressure_at: top`, because the load
+/// of the moving wall then includes the weight of the grains.
 bool pressure_lifts_column(const Parameters& parameters);
 
 struct TimeStep {
   double seconds = 0;
-  double over_contact_time = 0;     ///< time step / duration of a collision, pi/sqrt(2 k/m)
+  double over_contact_time = 0;     ///< time step / t_c; a collision takes t_c = pi/sqrt(2 k/m)
   double over_stability_limit = 0;  ///< time step / stability_limit_s()
 };
 
@@ -67,8 +68,8 @@ bool may_differ_in_settling(std::string_view key);
 bool takes_auto(std::string_view key);
 
 /// Sets the parameter so that the time step is about 0.3547 times the stability limit, as in Table
-/// I, and a cycle, or 2 s of settling, is a whole number of steps. The parameters of Table I give
-/// the time step of Table I. The result may be out of range; check it with check_value().
+/// I. A cycle (for settle_time_step_s: 2 s) is a whole number of time steps. The parameters of
+/// Table I give its time step. The result may be out of range; check it with check_value().
 void resolve_auto(std::string_view key, Parameters& parameters);
 
 /// Mean overlap of touching grains at rest [d], to leading order: 0.75 p d/k. By the virial, a

@@ -51,7 +51,7 @@ struct VariantCheck {
     check_cell();
     check_start();
     if (const string why = unfit_for_lammps(p, scale.checkpoints); !why.empty()) {
-      report({"engine"}, why, "Leave `engine` out, or what LAMMPS cannot do.");
+      report({"engine"}, why, "Remove `engine`, or change the key that LAMMPS does not support.");
     }
     if (!scale.checkpoints.phases.empty()) check_phases();
   }
@@ -72,8 +72,8 @@ struct VariantCheck {
     return nullptr;
   }
 
-  // Reports a problem with the value of the first of `keys`. The message gives the line of the
-  // first of these keys that the manifest contains.
+  // Reports a problem with the value of the first key in `keys`. The message gives the line of this
+  // key or, if the manifest does not set it, of the next key in `keys` that the manifest sets.
   void report(std::initializer_list<string_view> keys, const string& problem,
               const string& remedy) {
     const string_view key = *keys.begin();
@@ -133,10 +133,11 @@ struct VariantCheck {
     }
     if (const double pause = pause_time_steps(p);
         p.protocol == ProtocolKind::paused && pause > kMostPauseSteps) {
-      report({"pause_s", "period_s", "steps_per_cycle"},
-             format("the pause takes {:.3g} time steps", pause),
-             format("Use a pause of at most {:g} time steps (period_s/steps_per_cycle).",
-                    kMostPauseSteps));
+      report(
+          {"pause_s", "period_s", "steps_per_cycle"},
+          format("the pause takes {:.3g} time steps", pause),
+          format("Use a pause of at most {:g} time steps. A time step is period_s/steps_per_cycle.",
+                 kMostPauseSteps));
     }
   }
 
@@ -150,8 +151,8 @@ struct VariantCheck {
     }
     if (too_large(shape)) {
       report({"fill_packing_fraction", "nominal_packing_fraction"},
-             format("the cell for the loose grains would be {:.3g} d wide and {:.3g} d high and "
-                    "have {:.2g} wall grains, which is too large for {} grains",
+             format("the cell for the loose grains would be too large: {:.3g} d wide and {:.3g} d "
+                    "high, and {:.2g} wall grains for {} grains",
                     cell_width(shape), fill_height(shape), wall_grain_count(shape), p.grains),
              "Raise this value, or nominal_packing_fraction.");
     }
@@ -203,21 +204,23 @@ struct VariantCheck {
   }
 };
 
-/// Whether spreadsheets would read the text as a formula. With East Asian settings, they also read
-/// the full-width forms of the four characters.
+/// Whether spreadsheet programs would read the text as a formula: it begins with =, +, - or @. With
+/// East Asian settings, the full-width forms of these four characters also begin a formula.
 bool is_formula(string_view text) {
   text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
   constexpr string_view begins[] = {"=", "+", "-", "@", "＝", "＋", "－", "＠"};
   return std::ranges::any_of(begins, [&](string_view one) { return text.starts_with(one); });
 }
 
-/// Checks that each label and statement can be seen and is no formula, that each label belongs to a
-/// variant of at least one scale, and that no two variants of one scale have the same name.
+/// Checks that each label and statement has visible characters and is not a formula (is_formula()),
+/// that each label belongs to a variant of at least one scale, and that no two variants of one
+/// scale have the same name.
 void check_texts(const Manifest& manifest, const std::vector<Scale>& scales,
                  ProblemList& problems) {
   const auto check = [&](Position at, const char* key, const string& text) {
     if (!as_seen(text).empty() && !is_formula(text)) return;
-    problems.add(at, key, "has no visible characters, or is a formula for spreadsheets",
+    problems.add(at, key,
+                 "has no visible characters, or would be read as a formula by spreadsheet programs",
                  format("\"{}\"", printable(text)), "Begin it with a letter or a digit.");
   };
   for (const VariantLabel& label : manifest.labels) check(label.at, "labels", label.name);
@@ -248,8 +251,8 @@ void check_texts(const Manifest& manifest, const std::vector<Scale>& scales,
   }
 }
 
-/// Why the key (a parameter, `until` or `checkpoints`) has no effect with these parameters, such as
-/// "has an effect only under protocol paused". "" if the key has an effect.
+/// Why the key (a parameter, `until` or `checkpoints`) has no effect if the parameters are `p`; ""
+/// if the key has an effect. Example: "has an effect only under protocol paused".
 string without_effect(string_view key, const Parameters& p) {
   const Field* field = find_field(key);
   const Identity identity = field == nullptr ? Identity{} : field->identity;
@@ -307,8 +310,8 @@ std::vector<string> advice_on(const Variant& variant, bool settles) {
   if (!pressure_lifts_column(p)) {
     advice.push_back(
         format("the pressure of {} Pa cannot lift the grains above the moving bottom wall (N = "
-               "{}). Use `pressure_at: top`, raise pressure_Pa, move the top wall, turn gravity "
-               "off, or choose a lower cell (height_over_width).",
+               "{}). Use `pressure_at: top` or `moving_wall: top`, raise pressure_Pa, turn gravity "
+               "off, or lower height_over_width.",
                p.pressure_Pa, p.grains));
   }
   if (!has_interior(p)) {
@@ -397,7 +400,7 @@ bool has_checkpoint(const FrameRun& run, const std::array<std::uint64_t, 2>& cyc
 /// value.
 string lack_of(const string& column, const std::array<std::uint64_t, 2>& cycles, RunGroup runs,
                const json& wanted = nullptr) {
-  std::uint64_t back = 0;  // a value may also need an earlier checkpoint
+  std::uint64_t back = 0;  // a value also needs the checkpoint this many cycles earlier; 0: none
   for (const string& name : providers_of({&column, 1})) {
     back = std::max(back, provider(name).cycles_back);
   }
@@ -414,7 +417,7 @@ string lack_of(const string& column, const std::array<std::uint64_t, 2>& cycles,
       column);
 }
 
-/// Why no run will have a value for the plot; "" if some run may have one.
+/// Why no run will have a value for the plot; "" if some run may have a value.
 string lack_of(const PlotSpec& plot, const Scale& scale, RunGroup runs) {
   const auto [shortest, longest] = std::ranges::minmax(
       std::views::transform(runs, [](const FrameRun* run) { return run->ask.target_cycles; }));
@@ -430,7 +433,8 @@ string lack_of(const PlotSpec& plot, const Scale& scale, RunGroup runs) {
   return lack.empty() ? lack_of(plot.x, cycles, runs, wanted) : lack;
 }
 
-/// Why a run will have no value for the claim, which needs all its cycles; "" if it may have one.
+/// Why the run will have no value for the claim; "" if the run may have a value. If the claim
+/// states cycles, the run must have a value at each of these cycles.
 string lack_of(const ClaimSpec& claim, const FrameRun* run) {
   if (!claim.cycles) return "";
   const auto [first, last] = *claim.cycles;
@@ -449,8 +453,8 @@ string lack_of_partner(const PlotSpec& plot, const PlotRuns& selection) {
   std::vector<string> alone;
   for (const FrameRun* run : selection.alone) alone.push_back(run->place.variant);
   return format(
-      "the plot omits {}, because {} has other packings. Under `settle`, set the parameters that "
-      "all packings must share.",
+      "the plot omits {}, because {} does not have the same packings. Under `settle`, set the "
+      "parameters that all packings must share.",
       some_of(alone, 8), words_of(plot.minus));
 }
 
@@ -500,7 +504,9 @@ std::vector<string> problems_of(const PlotSpec& plot, const ScaleRuns& here,
   }
   if (plot.x == "shear_strain" && (!plot.cycles || here.scale.checkpoints.phases.empty())) {
     found.push_back(
-        "shear_strain is 0 at whole cycles. Set `cycles`, and `phases` of `checkpoints`.");
+        "shear_strain is 0 at whole cycles. To draw phases within a cycle, set `cycles` in the "
+        "plot "
+        "and `phases` in `checkpoints`.");
   }
   for (const SeriesSpec& one : plot.series) {
     // A listed plot is checked only in the manifest that defines it.
@@ -511,8 +517,8 @@ std::vector<string> problems_of(const PlotSpec& plot, const ScaleRuns& here,
     };
     if (curves == 1 || (curves == 0 && std::ranges::any_of(all, is_drawn))) continue;
     found.push_back(
-        format("the style for {} matches {} curves, but a style is for one curve. Choose values of "
-               "one curve that the plot draws.",
+        format("the style for {} matches {} curves, but a style is for one curve. In `series`, "
+               "give parameter values that exactly one curve of the plot has.",
                words_of(one.where), curves));
   }
   found.push_back(unused_cycle(plot));
@@ -566,10 +572,10 @@ std::vector<std::pair<string, const Placed<Spec>*>> stated_in(
   return found;
 }
 
-/// Reports each entry of `primary` that is neither the id nor, as in older manifests, the statement
-/// of a claim at any scale. The values of `for_each` are not checked if they do not follow from
-/// this manifest: in claims of computed figures, and in claims over the runs of other experiments
-/// (`of`).
+/// Reports each entry of `primary` that is not the id of a claim at any scale (in older manifests:
+/// its statement). An id can end in `@` and a value of `for_each`. This value is not checked for
+/// claims of computed figures and for claims over the runs of other experiments (`of`), because
+/// there the values do not follow from this manifest.
 void check_primary(const Manifest& manifest, const std::vector<Scale>& scales,
                    ProblemList& problems) {
   std::set<string> ids, unchecked, statements;
@@ -691,7 +697,7 @@ void check_variants(const Manifest& manifest) {
     if (!scale.looks.empty()) needed.push_back({scale.looks.back(), scale.seeds.at});
     for (const auto& [number, at] : needed) {
       if (number <= seeds) continue;
-      problems.add(at, "seeds", "are fewer than `looks` or the sweep needs", number.dump(),
+      problems.add(at, "seeds", "are fewer than a number in `looks` or in the sweep", number.dump(),
                    format("Write `seeds: {}`, or list this many seeds.", number.dump()));
     }
     if (variants > ManifestLimits::runs || variants * seeds > ManifestLimits::runs - runs) {

@@ -181,7 +181,8 @@ class TreeBuilder : public YAML::EventHandler {
     anchored_[anchor] = node;
   }
 
-  // Counts the values and bytes of a copied node, and checks the limits. `depth`: of the copy.
+  // Counts the values and bytes of a copied node, and checks the limits. `depth`: number of lists
+  // and maps around the node.
   void check_size(const Node& node, Position at, std::size_t depth) {
     count_value(at);
     copied_ += node.text.size() + node.key.size();

@@ -37,15 +37,16 @@ Node read_document(std::string_view text, std::string_view file);
 
 /// The remedy for a key that is a number: YAML reads `{amplitude_rad: 0,05}` as a map with key 05.
 inline constexpr const char* kDecimalPoint =
-    "If the number follows a comma, write a decimal point, as in 0.05.";
+    "If this number follows a decimal comma, write a point instead of the comma, as in 0.05.";
 
 /// Throws ManifestError with the position if the text is not UTF-8, or has control characters other
-/// than tabs and line ends. `remedy` is for control characters.
+/// than tabs and line ends. `remedy`: the advice given about a control character.
 void check_characters(std::string_view text, std::string_view file, std::string_view remedy);
 
-/// Makes a text safe to print in a one-line message, and cuts it after `longest` bytes. Escapes
-/// such as \x1b or \u202e replace control characters, characters that change the direction of text,
-/// bytes that are not UTF-8, noncharacters, invisible characters, and blanks other than the space.
+/// Makes a text safe to print in a one-line message, and cuts it after `longest` bytes. Writes an
+/// escape such as \x1b or \u202e in place of each control character, character that changes the
+/// direction of text, byte that is not UTF-8, noncharacter, invisible character, and blank other
+/// than the space.
 std::string printable(std::string_view text, std::size_t longest = 60);
 
 /// Makes a text safe to print in a terminal. Unlike printable(), keeps blanks and

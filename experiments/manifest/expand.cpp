@@ -62,16 +62,17 @@ std::vector<std::uint64_t> choose_seeds(const Manifest& manifest, const Seeds& s
 void set_engine(const Manifest& manifest, const std::string& engine, Scale& scale) {
   check_option(manifest, "engine", engine, *find_field("engine"));
   if (find_axis(scale.sweep, "engine") != nullptr) {
-    refuse(manifest.file, {}, "engine", "the manifest sweeps this key itself", engine,
-           "Leave the option out.");
+    refuse(manifest.file, {}, "engine", "the manifest already sweeps this key", engine,
+           "Leave out `--engine`.");
   }
   if (value_at(scale, "engine") == engine) return;
   std::vector<SweepAxis>& grid = scale.sweep.grid;
   grid.insert(grid.begin(), SweepAxis{"engine", {}, {Setting{engine, {}}}});
 }
 
-// `common`: experiment, scale, manifest and checkpoints of all runs. `recorded`: the run whose
-// state is the initial state of this run, or null. `file`: the initial grains, if read from a file.
+// `common`: experiment, scale, manifest and checkpoints, which are the same for all runs.
+// `recorded`: the run whose state is the initial state of this run, or null. `file`: the initial
+// grains, if read from a file.
 PlannedRun planned_run(const Membership& common, const Scale& scale, const Variant& variant,
                        std::uint64_t seed, const Stage* recorded,
                        const std::optional<PackingText>& file) {
@@ -104,7 +105,7 @@ PlannedRun planned_run(const Membership& common, const Scale& scale, const Varia
 // with this version of the manifest. `place`: manifest, experiment and scale.
 void take_declared_lengths(const Place& place, std::span<const Stage> known,
                            std::vector<Variant>& variants) {
-  std::map<std::string, std::uint64_t> longest;  // by name of the variant
+  std::map<std::string, std::uint64_t> longest;  // number of cycles by variant
   for (const Stage& stage : known) {
     for (const auto& [other, ask, newest] : stage.memberships) {
       if (other.experiment != place.experiment || other.scale != place.scale) continue;
@@ -129,7 +130,8 @@ std::vector<FrameRun> planned_runs(const Manifest& manifest, const Scale& scale,
     const PlannedRun planned = planned_run(common, scale, variant, 1, nullptr, {});
     FrameRun& run = runs.emplace_back(FrameRun{planned});
     run.name = names.at(variant.swept);
-    // If a manifest has `start`, variants may share a packing, and its id is not known yet.
+    // With `start`, the id of the packing is not known yet. All runs get the same text instead,
+    // because the variants may share a packing.
     const bool known = !scale.start.is_recorded() && scale.start.file.empty();
     run.packing = known ? planned.prepare->id : "start";
     for (const Field& field : schema()) run.parameters[field.name] = field.get(planned.parameters);
@@ -189,7 +191,7 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
     if (const std::string why = unfit_for_lammps(variant.parameters, scale.checkpoints);
         !why.empty()) {
       refuse(manifest.file, {}, "engine", why, "lammps",
-             "Leave out `--engine`, or remove from the manifest what LAMMPS cannot do.");
+             "Leave out `--engine`, or change the key that LAMMPS does not support.");
     }
     const Stage* recorded = nullptr;
     if (scale.start.is_recorded()) {

@@ -20,17 +20,19 @@ namespace shearcell {
 struct ExpandOptions {
   std::optional<std::string> scale = {};     ///< default: `desk`, or `base` if there are no scales
   std::optional<std::uint64_t> cycles = {};  ///< replaces the number in the manifest
-  std::optional<std::uint64_t> seeds = {};   ///< replaces the number of seeds, or cuts the list
-  std::vector<std::string> variants = {};    ///< only variants with these values, as "fluid=cell"
+  /// Replaces the number of seeds. If the manifest lists seeds, the first ones are used.
+  std::optional<std::uint64_t> seeds = {};
+  std::vector<std::string> variants = {};      ///< only variants with these values, as "fluid=cell"
   std::vector<std::uint64_t> only_seeds = {};  ///< only runs with these seeds; empty for all
   std::optional<std::string> engine = {};      ///< replaces the engine; becomes a swept key
-  /// Stages in the store, and stages that the same command computes before this manifest. If an
-  /// earlier command requested more cycles of the same manifest, warnings assume the larger number.
+  /// Stages in the store, and stages of the manifests before this one in the same command. If an
+  /// earlier command requested more cycles of this manifest, warnings assume the larger number.
   std::span<const Stage> known = {};
 };
 
-/// A run as a manifest defines it. Each of its stages has one Membership: in this manifest. The
-/// scale is "" if the manifest has no scales; the variant is "base" if nothing is swept.
+/// A run as a manifest defines it. Each of its stages has exactly one Membership, which names this
+/// manifest. The scale is "" if the manifest has no scales; the variant is "base" if nothing is
+/// swept.
 struct PlannedRun : Run {
   std::optional<Stage> prepare;  ///< the packing; none if the shear begins with a recorded state
   Parameters parameters;
@@ -43,7 +45,8 @@ struct Plan {
   std::optional<PackingText> file = {};    ///< the initial grains of all packings
   std::vector<PlannedRun> runs = {};       ///< by variant, then by seed, as the manifest lists them
   std::vector<std::string> warnings = {};  ///< about probable mistakes; one line each
-  /// What was read from the file of grains, or whose runs the figures use (`of`); one line or "".
+  /// One line: what was read from the file of grains, or which experiments have the runs that the
+  /// figures use (`of`). "" if there is neither.
   std::string read = {};
 };
 

@@ -137,7 +137,7 @@ StageInputs read_stage(const json& resolved) {
   for (const Field& field : schema()) {
     const auto found = values.find(field.name);
     if (field.identity.recorded_as.empty() || found == values.end()) continue;
-    own["parameters"][std::string(field.name)] = *found;  // older records may differ
+    own["parameters"][std::string(field.name)] = *found;  // older records may have another value
   }
   for (const json& change : json::diff(own, resolved)) {
     const std::string key = change.at("path").get<std::string>();

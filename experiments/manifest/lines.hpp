@@ -23,9 +23,10 @@ struct ManifestLine {
 std::vector<ManifestLine> manifest_lines(std::string_view text, std::string_view scale,
                                          const nlohmann::json& swept, std::string_view figure);
 
-/// How a shear run differs from its manifest because of --cycles, --seeds or --engine. Has a key
-/// "cycles", "seed" or "engine" with {"run": VALUE, "manifest": VALUE} if this value differs. The
-/// manifest's seeds are a list. Null if nothing differs or the manifest cannot be read.
+/// How a shear run differs from its manifest because of --cycles, --seeds or --engine. The
+/// object has a key "cycles", "seed" or "engine" for each of these that differs, with the value
+/// {"run": VALUE, "manifest": VALUE}. Under "seed", the VALUE of the manifest is the list of its
+/// seeds. Returns null if nothing differs or the manifest cannot be read.
 nlohmann::json overrides(std::string_view text, const Place& place, const Ask& ask);
 
 }  // namespace shearcell

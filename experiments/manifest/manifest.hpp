@@ -158,7 +158,8 @@ struct Start {
   std::string experiment = {};
   std::string scale = {};  ///< scale of the recorded run; "": the scale of the sheared run
   nlohmann::json variant = nlohmann::json::object();  ///< swept values; empty if not given
-  /// First digits of the run's id, given by `checkpoint` instead of experiment, scale and variant.
+  /// First digits of the run's id, from the key `checkpoint`, which replaces experiment, scale and
+  /// variant.
   std::string run = {};
   Settings settings = {};  ///< start_seed, start_cycle, start_noise_d
   Position at = {};
@@ -187,7 +188,7 @@ struct Scale {
   std::vector<PrimaryClaim> primary = {};  ///< the claims that these runs are meant to decide
   /// Number of seeds at each look (interim analysis), ascending. Empty: one look, with all seeds.
   std::vector<std::uint64_t> looks = {};
-  std::set<std::string> own = {};  ///< keys that the entry of `scales` itself contains
+  std::set<std::string> own = {};  ///< keys written in this entry of `scales`
 };
 
 struct Manifest {

@@ -37,7 +37,9 @@ constexpr const char* kColumns[] = {"x", "y", "z", "vx", "vy", "vz"};
 /// What a column with one of these names contains. If several columns could contain the same
 /// quantity, those with the lowest rank are read.
 struct Meaning {
-  string_view names = {};   ///< in lower case; if count = 1, name k gives quantity first + k - 1
+  /// In lower case. If count = 1, the first name means the quantity `first`, the second name means
+  /// the next quantity, and so on. Otherwise all names mean the same.
+  string_view names = {};
   int first = kQuantities;  ///< first quantity of the column; kQuantities: unknown
   int count = 1;            ///< number of values in the column
   double factor = 1;        ///< 2 for radii
@@ -65,7 +67,7 @@ struct Column {
 struct GrainTable {
   string_view header = {};  ///< the line with the names of the columns
   std::vector<Column> columns = {};
-  const char* more = nullptr;  ///< what additional values in a row are; null: they are an error
+  const char* more = nullptr;  ///< what additional values in a row mean; null: they are an error
   char separator = ' ';        ///< ' ' means any number of blanks and tabs
   double first_wall = 1;       ///< a row is a wall grain if its value of kWall is at least this
   std::vector<string_view> rows = {};
@@ -80,7 +82,7 @@ struct Section {
 struct Box {
   string_view line;            ///< last line with a part of the box
   Eigen::AlignedBox3d planes;  ///< empty along axes without bounds
-  double lean = 0;             ///< largest component of an edge perpendicular to its axis
+  double lean = 0;             ///< largest off-axis component of an edge; 0 if orthogonal
 };
 
 struct Use {
@@ -127,7 +129,8 @@ std::vector<string_view> split(string_view text, char separator = ' ') {
   }
 }
 
-/// The unit with this name in lower case, or nothing. The micro sign is not the Greek letter.
+/// The unit with this name in lower case, or nothing. The unit um may also be written with
+/// the micro sign (U+00B5) or the Greek letter mu (U+03BC).
 std::optional<LengthUnit> unit_of(string_view name) {
   if (name == "\u00b5m" || name == "\u03bcm") return LengthUnit::um;
   if (name == "si") return LengthUnit::m;
@@ -135,14 +138,14 @@ std::optional<LengthUnit> unit_of(string_view name) {
 }
 
 /// `units`: whether listed names may end in a unit, as in x_m. A name that is not listed can still
-/// be recognized as a diameter, which is only checked, or as a position or velocity, which is
-/// refused: earlier versions ignored such velocities, so reading them now would change packings
-/// with known ids. For the same reason, columns such as x_mm or "x [m]" are only read if there is
-/// no x, x_m or x_d.
+/// be recognized as a diameter, a position or a velocity. Such a diameter is compared with that of
+/// the run; such a position or velocity is refused. Earlier versions ignored such velocities, so
+/// reading them now would change packings with known ids. For the same reason, columns such as x_mm
+/// or "x [m]" are only read if there is no x, x_m or x_d.
 Meaning meaning_of(const Column& column, bool units) {
   static const std::regex with_unit(
       "(.+?)([ _]|[ _]*[\\[(])(d|[mcu]?m|\u00b5m|\u03bcm)(_per_s|/s)?[\\])]?");
-  // A prefix that LAMMPS or a user writes before a name, and an index or a unit after it.
+  // LAMMPS or a user may write a prefix before a name, and an index or a unit after the name.
   static const string before = "([cfv]_|d2?_)?(particle|grain|sphere|atom|bead|ball)?[ _]?(";
   static const string after = ")([ _]*[\\[({/:.].*|[ _](m|d|si|lj|.?.m)([ _]?(per|p)?[ _]?s)?)?";
   static const string size = "(?!.*(max|min|cut|curvature|gyration|ratio)).*";
@@ -191,7 +194,7 @@ Meaning meaning_of(const Column& column, bool units) {
           .unit = unit};
 }
 
-/// Whether a part of a file that is not read, such as a key or a section, concerns the box, a unit,
+/// Whether a key, a section or another part of a file with this name concerns the box, a unit,
 /// the kind of the coordinates, the velocities or the shape of the grains.
 bool concerns_grains(string_view name) {
   static const std::regex concerns(
@@ -207,7 +210,8 @@ bool concerns_grains(string_view name) {
   return std::regex_search(lower(name.substr(0, 64)), concerns);  // limits the recursion
 }
 
-/// Whether the text has as many numbers in a row as the edges and angles of a box: 6 or 9.
+/// Whether the text has exactly 6 or 9 consecutive numbers. A box may be written as 6 numbers (the
+/// lengths and angles of the edges) or as 9 (the components of the edges).
 bool may_be_box(string text) {
   std::ranges::replace_if(
       text, [](char c) { return string_view(",;\"'{}[]()").find(c) != string::npos; }, ' ');
@@ -640,7 +644,7 @@ class PackingReader {
     }
   }
 
-  /// Sets the unit of lengths to one that the file names. The value "lj" sets no unit.
+  /// Sets the unit of lengths to `text`, the unit in the file. The value "lj" sets no unit.
   void take_unit(string_view text) {
     const string name = lower(text);
     if (name == "lj") return;
@@ -753,7 +757,8 @@ class PackingReader {
   /// The diameter of the run's grains in the unit of the file.
   double diameter() const { return facts_.diameter_m / metres(unit_.value(), facts_.diameter_m); }
 
-  /// Reads the rows of a table, sorted by id. Each diameter must be that of the run.
+  /// Reads the rows of a table. Sorts them by id if they have ids. Each diameter must be the
+  /// diameter of the run's grains.
   std::vector<GrainRow> rows_of(const GrainTable& table, const std::vector<Use>& uses) {
     std::size_t columns = 0;
     for (const Column& column : table.columns) columns += static_cast<std::size_t>(column.count);
@@ -778,9 +783,10 @@ class PackingReader {
                     fmt::format("is not the {} of the manifest's grains, {:.6g} {}",
                                 use.factor > 1 ? "radius" : "diameter", diameter() / use.factor,
                                 name_of(unit_.value())),
-                    "This program needs equal grains. Is the unit right? If so, set `diameter_m`, "
-                    "scale the file, or remove the column if it is something else. Continue a "
-                    "packing of unequal grains in LAMMPS (`shearcell export --to lammps`).");
+                    "This program needs equal grains. Check the unit. If it is right, set "
+                    "`diameter_m` or scale the file. If the column has no diameters or radii, "
+                    "remove it. Continue a packing of unequal grains in LAMMPS (`shearcell export "
+                    "--to lammps`).");
       }
     }
     if (!holds(uses, kId)) return rows;
@@ -819,7 +825,7 @@ class PackingReader {
 
   PackingFile packing() {
     interpret_box();
-    std::vector<string> aside = std::exchange(not_read_, {});  // to be listed after unread columns
+    std::vector<string> aside = std::exchange(not_read_, {});  // list unread columns first
     uses_ = interpret(grains_);
     require_columns();
     unit_ = stated_unit();
@@ -855,10 +861,10 @@ class PackingReader {
     const Eigen::Vector3d size = space.merged(extent).sizes();
     if (size.maxCoeff() > kLongestCell || (box_ && space.sizes().z() < kShallowestCell)) {
       refuse_file(
-          fmt::format("box and grains are {:.3g} x {:.3g} x {:.3g} d large", size.x(), size.y(),
-                      size.z()),
-          fmt::format("At most {:g} d are allowed, and at least {:g} d along z. Is the unit "
-                      "of lengths right?",
+          fmt::format("box and grains together are {:.3g} x {:.3g} x {:.3g} d large", size.x(),
+                      size.y(), size.z()),
+          fmt::format("At most {:g} d are allowed along each axis, and a box needs at least "
+                      "{:g} d along z. Is the unit of lengths right?",
                       kLongestCell, kShallowestCell));
     }
     if (box_) require_inside(space, packing.position);
@@ -896,7 +902,8 @@ class PackingReader {
     Cell cell;
     cell.width = size.x();
     cell.top = size.y();
-    cell.depth = size.z() + (box_ ? 0 : kShallowestCell);  // without a box, no images touch
+    // Without a box, nothing is periodic. The additional depth keeps periodic images apart.
+    cell.depth = size.z() + (box_ ? 0 : kShallowestCell);
     const Eigen::Matrix3Xd sites = position.colwise() - space.min();
     double largest = 0;
     for_each_pair(cell, wall_pose(cell, 0, 0), sites, 1,
@@ -926,7 +933,7 @@ class PackingReader {
   const PackingFacts& facts_;
   std::vector<string_view> lines_;
 
-  string remedy_;  ///< how to write what is missing or cannot be read in this format
+  string remedy_;  ///< for messages: how to write box, columns and units in this format
   std::optional<Box> box_;
   GrainTable grains_, moving_;
   bool units_in_names_ = false;  ///< whether names of columns contain units

@@ -222,9 +222,10 @@ TEST(Expand, AZipHasANumberOfSeedsForEachVariant) {
   EXPECT_EQ(plan.runs[0].place.swept, (nlohmann::json{{"amplitude_rad", 0.05}}));
   EXPECT_EQ(expand(manifest, {.seeds = 2}).runs.size(), 4U) << "of each variant";
   EXPECT_EQ(expand(manifest, {.only_seeds = {8}}).runs.size(), 1U);
-  EXPECT_EQ(message_of<ManifestError>([&] { parse(text + "scales: {desk: {seeds: 2}}\n"); }),
-            "test.yaml:3:54: seeds: are fewer than `looks` or the sweep needs (got 3). Write "
-            "`seeds: 3`, or list this many seeds.");
+  EXPECT_EQ(
+      message_of<ManifestError>([&] { parse(text + "scales: {desk: {seeds: 2}}\n"); }),
+      "test.yaml:3:54: seeds: are fewer than a number in `looks` or in the sweep (got 3). Write "
+      "`seeds: 3`, or list this many seeds.");
 }
 
 TEST(Expand, TakesOnlyTheRequestedVariants) {

@@ -58,7 +58,8 @@ const std::string kXyz =
     "column, with pos:R:3, and vel:R:3 if there are velocities), length_unit and velocity_unit, "
     "without blanks around `=`.";
 const std::string kSize =
-    "At most 100000 d are allowed, and at least 3 d along z. Is the unit of lengths right?";
+    "At most 100000 d are allowed along each axis, and a box needs at least 3 d along z. Is the "
+    "unit of lengths right?";
 const std::string kData =
     "Write the box as xlo xhi, ylo yhi and zlo zhi, and the sections Atoms (atom_style sphere or "
     "atomic) and Velocities.";
@@ -76,9 +77,9 @@ const std::string kOneFrame = " Use a complete file of one frame, or correct the
 const std::string kTwoUnits =
     " Write all lengths in one unit, and state it in the file or as `unit` in the manifest.";
 const std::string kEqual =
-    " This program needs equal grains. Is the unit right? If so, set `diameter_m`, scale the file, "
-    "or remove the column if it is something else. Continue a packing of unequal grains in LAMMPS "
-    "(`shearcell export --to lammps`).";
+    " This program needs equal grains. Check the unit. If it is right, set `diameter_m` or scale "
+    "the file. If the column has no diameters or radii, remove it. Continue a packing of unequal "
+    "grains in LAMMPS (`shearcell export --to lammps`).";
 const std::string kDeep =
     "At most 0.25 d are allowed (`max_overlap_diameters`). Are the unit of the lengths and the "
     "diameter right? If so, let the grains relax in the program that made the file.";
@@ -155,13 +156,13 @@ const std::vector<BadPacking> kBad = {
     {"BoxIncomplete", "a.xyz", xyz("Lattice=\"9 9 9\"", "A 1 1 1\nA 3 3 3\n"),
      "a.xyz:2:1: cannot be read in this form (got Lattice=\"9 9 9\"). " + kXyz + kOrRemove},
     {"BoxFlat", "a.xyz", xyz("Lattice=\"9 0 0 0 9 0 0 0 2\"", "A 1 1 1\nA 3 3 1\n"),
-     "a.xyz: box and grains are 9 x 9 x 2 d large. " + kSize},
+     "a.xyz: box and grains together are 9 x 9 x 2 d large. " + kSize},
     {"OutsideOfTheBox", "a.xyz", xyz(kLattice, "A 1 1 1\nA 3 -3 3\n"),
      "a.xyz:4:1: the grain is outside of the box: y = -3 d is not between 0 and 9 d. Only z is "
      "periodic; x and y have walls. Write a box that contains all grains. In extended XYZ, Origin "
      "is the lower corner of the box (default 0 0 0)."},
     {"TooLong", "a.xyz", xyz("", "A 1 1 1\nA 3e9 3 3\n"),
-     "a.xyz: box and grains are 3e+09 x 4 x 4 d large. " + kSize},
+     "a.xyz: box and grains together are 3e+09 x 4 x 4 d large. " + kSize},
     {"AtOnePlace", "a.xyz", xyz("", "A 1 1 1\nA 1 1 1\n"),
      "a.xyz:4:1: the grain overlaps the grain in line 3 by 1 d. " + kDeep},
     {"Overlapping", "a.xyz", xyz(kLattice, "A 1 1 1\nA 1.5 1 1\n"),
