@@ -106,16 +106,16 @@ void fields(Sweep& sweep, const auto& visit) {
 void fields(Start& start, const auto& visit) {
   visit(start.experiment, {.name = "experiment", .doc = "experiment of the recorded run"});
   visit(start.scale,
-        {.name = "scale", .doc = "scale of the recorded run; default: the scale of this run"});
+        {.name = "scale", .doc = "scale of the recorded run; default: the scale of the new run"});
   visit(start.variant,
         {.name = "variant",
          .doc = "swept values that select the variant of the recorded run, as in `where` or as "
-                "`\"fluid=still\"`; default: for each key that both experiments sweep, the value "
-                "of this run",
+                "`\"fluid=still\"`. Default: the values of the new run, for all keys that the "
+                "experiments of both runs sweep",
          .example = "{fluid: still}"});
   visit(start.run, {.name = "checkpoint",
-                    .doc = "instead of experiment, seed and cycle: `ID@CYCLE`, with the first "
-                           "digits (at least eight) of the run's id and a whole cycle",
+                    .doc = "instead of experiment, seed and cycle: `ID@CYCLE`. ID is at least the "
+                           "first eight digits of the run's id; CYCLE is a whole number",
                     .example = "0123abcd@10",
                     .longest = kLongestLabel});
   visit(start.settings, {.name = "seed", .doc = "parameter start_seed"});
@@ -139,12 +139,12 @@ void fields(Scale& scale, const auto& visit) {
   visit(scale.settle, {.name = "settle",
                        .doc = "parameter values that apply only while the packing settles. The "
                               "parameters must act on the grains or on the moving wall. Variants "
-                              "that differ only in the shear then share a packing",
+                              "that differ only in these parameters share their packings",
                        .example = "{drag_kg_per_s: 1.28e-3}"});
   visit(scale.start,
         {.name = "start",
-         .doc = "initial state: the state of a recorded run, with different noise for each seed, "
-                "or the grains of a file. Default: loose grains that settle",
+         .doc = "initial state: either the grains of a file, or the state of a recorded run, to "
+                "which each seed can add different noise. Default: loose grains that settle",
          .besides = ", or `{file: packing.extxyz}`",
          .example = "{experiment: drag, variant: \"fluid=still\", seed: 3, cycle: 10, noise_d: "
                     "1.0e-13}"});
@@ -155,8 +155,9 @@ void fields(Scale& scale, const auto& visit) {
   visit(scale.checkpoints,
         {.name = "checkpoints",
          .doc = "`every_cycles`: number of cycles between checkpoints, default 1; the last cycle "
-                "always has a checkpoint. `phases`: after each of these checkpoints, there are "
-                "more at the given fractions of the next cycle (pause included); default none",
+                "always has a checkpoint. `phases`: fractions of a cycle, whose duration includes "
+                "the pause. At these fractions, the cycle after each checkpoint of `every_cycles` "
+                "has further checkpoints. Default: none",
          .example = "{every_cycles: 1, phases: [0.25, 0.5, 0.75]}"});
   visit(scale.until,
         {.name = "until",
@@ -209,21 +210,22 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
   static const Names terms = joined({"cycle"}, scalars, numbers(), runs);
   visit(plot.name,
         {.name = "name", .doc = "required; also the name of the plot's files", .required = true});
-  visit(plot.also, {.name = "y",
-                    .doc = "required; a [measure](#measures), with values at checkpoints or one "
-                           "value for each run (`onset_size_phi`), or an expression of measures "
-                           "and parameters: `stress_xy_Pa/contact_pressure_Pa`. The caption tells "
-                           "how many runs end before the onset. A list draws several columns; a "
-                           "map also gives them names: `{phi_u: phi_uncorrected, phi: phi}`",
-                    .names = can_be_y,
-                    .terms = terms,
-                    .required = true});
+  visit(plot.also,
+        {.name = "y",
+         .doc = "required; a [measure](#measures), with values at checkpoints or one value for "
+                "each run (`onset_size_phi`), or an expression of measures and parameters: "
+                "`stress_xy_Pa/contact_pressure_Pa`. For a measure of the onset, the caption tells "
+                "how many runs end before the onset. A list draws several columns, and so does a "
+                "map from column names to measures: `{phi_u: phi_uncorrected, phi: phi}`",
+         .names = can_be_y,
+         .terms = terms,
+         .required = true});
   visit(plot.x,
         {.name = "x",
          .doc = "`cycle` (default), a measure, a parameter, or an expression such as `1/period_s`. "
-                "If `x` has one value for each run, `y` is the value at `at_cycle`. If this `x` "
-                "is a measure, such as `core_time_s`, all runs of a variant share one point, at "
-                "the mean of `x`",
+                "If `x` has one value for each run, `y` is the value at `at_cycle`. If `x` is a "
+                "measure of whole runs, such as `core_time_s`, all runs of a variant share one "
+                "point, at the mean of `x`",
          .names = can_be_x,
          .terms = terms});
   visit(plot.where,
@@ -238,9 +240,10 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
        .example = "{steps_per_cycle: 45600}"});
   visit(plot.by,
         {.name = "by",
-         .doc = "one curve for each value of this parameter. The plot must not average over other "
-                "swept parameters. Default: one curve for each variant or, if `x` is a "
-                "parameter, for each combination of the other swept values",
+         .doc = "one curve for each value of this parameter. It is an error if a curve would "
+                "average over another swept parameter; use `where` to select one value of that "
+                "parameter. Default: one curve for each variant or, if `x` is a parameter, for "
+                "each combination of the other swept values",
          .names = can_be_by});
   visit(plot.figure,
         {.name = "figure",
@@ -253,9 +256,9 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
   visit(plot.show,
         {.name = "show",
          .doc = "`mean` (default) or `rms` (root mean square), with standard errors; `traces`: "
-                "every run as a line; `scatter`: every value as a point. The CSV file of `traces` "
-                "and `scatter` lists every run, but only means if `y` is a curve, or if `x` has "
-                "one value for each run"});
+                "every run as a line; `scatter`: every value as a point. With `traces` and "
+                "`scatter`, the CSV file lists every run. If `y` is a curve, or if `x` has one "
+                "value for each run, the file lists means instead"});
   visit(plot.log, {.name = "log", .doc = "logarithmic axes; default `none`"});
   visit(plot.xlabel,
         {.name = "xlabel",
@@ -266,8 +269,9 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
   visit(plot.series,
         {.name = "series",
          .doc = "styles of curves, in drawing order. A style has label, colour (blue, vermilion, "
-                "green, purple, orange, sky, black or `\"#rrggbb\"`) and marker. Its key is a "
-                "value of `by`, `\"KEY=VALUE\"` as in `labels`, or the name of a measure in `y`",
+                "green, purple, orange, sky, black or `\"#rrggbb\"`) and marker. Each style is "
+                "written under one of these keys: a value of `by`; or `\"KEY=VALUE\"`, as in "
+                "`labels`; or a column name from the map `y`",
          .example = "{still: {label: $v_f = 0$, colour: blue, marker: open_circle}}"});
   visit(plot.published,
         {.name = "published",
@@ -275,8 +279,9 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
                 "with an `error`, or `points` [x, y] or [x, y, error]",
          .example = "[{label: Jin et al., value: 0.646, error: 0.001, source: S C}]"});
   visit(plot.also, {.name = "also",
-                    .doc = "further columns in the CSV file of a plot of means; a map also gives "
-                           "them names: `{phi_u: phi_uncorrected}`",
+                    .doc = "with `show: mean`: further columns of the CSV file, as a list of "
+                           "measures, or as a map from column names to measures: `{phi_u: "
+                           "phi_uncorrected}`",
                     .names = can_be_y,
                     .terms = terms,
                     .example = "[phi_uncorrected]"});
@@ -292,8 +297,9 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
   visit(plot.cycles,
         {.name = "cycles",
          .range = kCycles,
-         .doc = "with `show: traces` or `scatter`: the first and the last cycle to draw. "
-                "Checkpoints at `phases` are then drawn too. Other plots show only whole cycles",
+         .doc = "with `show: traces` or `scatter`: the first and the last cycle to draw. A plot "
+                "with this key also draws the checkpoints at `phases`. All other plots draw only "
+                "whole cycles",
          .example = "[20, 21]"});
 }
 
@@ -344,18 +350,20 @@ void fields(Placed<ClaimSpec>& claim, const auto& visit) {
   visit(claim.published,
         {.name = "published",
          .doc = "instead of `between`: a published number, which is subtracted from the mean over "
-                "the runs. With `is: lower` or `higher` and no margin, the number is a bound. The "
-                "verdict does not use `error`, so give a margin that includes the error",
+                "the runs. With `is: lower` or `is: higher`, the margin can be left out: the "
+                "number is then a bound. The verdict ignores `error`, so a margin should include "
+                "the error",
          .example = "{value: 0.646, error: 0.001, source: S C}"});
   visit(claim.between[0], {.name = "of",
-                           .doc = "with `published`: swept values of the compared variant",
+                           .doc = "with `published`: swept values that select the variant to "
+                                  "compare with the published number",
                            .example = "{fluid: still}"});
   visit(claim.margin,
         {.name = "margin",
          .range = {0, kInfinity, true},
          .doc = "in the unit of the measure. For `onset_size_cycle` and `reaches`, the margin "
-                "limits log2 of the ratio of the two waiting times, so 1 means a factor of 2, and "
-                "the log-rank test is used, which includes runs that end before the event"});
+                "limits log2 of the ratio of the two waiting times: 1 means a factor of 2. These "
+                "claims use the log-rank test, which includes runs that end before the event"});
   visit(claim.margin, {.name = "relative_margin",
                        .range = {0, kInfinity, true},
                        .doc = "instead of `margin`: limit of the relative difference; 0.03 means 3 "
@@ -373,8 +381,8 @@ void fields(Placed<ClaimSpec>& claim, const auto& visit) {
          .example = "[0.646, 0.67]"});
   visit(claim.reaches, {.name = "reaches",
                         .range = {-1e15, 1e15},
-                        .doc = "instead of `at_cycle`: a value. The first cycle at which the "
-                               "measure reaches this value is compared"});
+                        .doc = "instead of `at_cycle`: a value of the measure. The claim compares "
+                               "the first cycles at which the runs of each side reach this value"});
   visit(claim.is, {.name = "is",
                    .doc = "`same` (default): the difference is within the margin; `higher`, "
                           "`lower`: the first side is higher or lower by more than the margin"});
@@ -405,8 +413,9 @@ void fields(Manifest& manifest, const auto& visit) {
                             .folds = true});
   visit(manifest.of,
         {.name = "of",
-         .doc = "experiments in the store. The plots and claims use their runs, and this manifest "
-                "defines no runs. A selection of runs may contain the key `experiment`",
+         .doc = "experiments in the store. The plots and claims use the runs of these "
+                "experiments, and this manifest defines no runs. A selection of runs may contain "
+                "the key `experiment`",
          .example = "[drag, timestep]"});
   visit(manifest.figures,
         {.name = "figures", .doc = "figures of the supplement to draw", .example = "[S2]"});
@@ -631,8 +640,8 @@ struct Reader {
     return !(of_run && of_checkpoint);
   }
 
-  // Adds to `where` a parameter with its value, its list of values or its range. `experiment` and
-  // `cycle` are no parameters, but select runs and checkpoints.
+  // Adds to `where` a parameter with its value, its list of values or its range. The keys
+  // `experiment` and `cycle` are also allowed: they select runs of an experiment, and checkpoints.
   void read_where(const Node& in, json& where) {
     const std::array others = {Field{.name = "experiment", .names = experiments},
                                Field{.name = "cycle", .range = kCycles}};
@@ -760,8 +769,8 @@ struct Reader {
     }
   }
 
-  // Reads a pair: the sides of a claim, the first and last cycle, or the ends of a window. A key
-  // without an example (`at_cycle`) has one value, which becomes both the first and the last cycle.
+  // Reads a pair: the sides of a claim, the first and last cycle, or the ends of a window. The
+  // key `at_cycle`, whose Field has no example, has one value: the first and also the last cycle.
   template <class T>
   void read(const Node& in, const Field& about, std::array<T, 2>& both) {
     constexpr bool sides = std::is_same_v<T, json>, whole = std::is_integral_v<T>;
@@ -779,7 +788,7 @@ struct Reader {
     bool fits = parts.size() == 2;
     if constexpr (!sides) fits = fits && (both[0] < both[1] || (whole && both[0] == both[1]));
     if (fits || problems.size() > problems_before) return;
-    reject(in, sides ? "does not name two variants" : "is not a lower and an upper value",
+    reject(in, sides ? "does not name two variants" : "is not a range [lower, upper]",
            remedy_of(about));
   }
 
@@ -804,14 +813,14 @@ struct Reader {
 
   template <class T>
   void read(const Node& in, const Field& about, std::vector<T>& values) {
-    values.clear();  // a scale begins with the values of the top level
+    values.clear();  // a scale starts with a copy of the top level's list
     Field item = with_type<T>(about);
-    // Without the brackets; a number has no example.
+    // An item has the example of the list without brackets, or no example if it is a number.
     item.example = item.example.substr(1, std::is_arithmetic_v<T> ? 0 : item.example.size() - 2);
     for (const Node& each : items_of(in, about.example)) read(each, item, values.emplace_back());
   }
 
-  // Reads the styles of curves. name_series() reads their keys.
+  // Reads the styles in `series`. name_series() reads the keys of `series`, which select curves.
   void read(const Node& in, const Field& about, std::vector<SeriesSpec>& series) {
     if (!in.is_map()) return reject_type(in, "a map", remedy_of(about));
     for (const Node& part : in.parts) {
@@ -889,7 +898,7 @@ struct Reader {
       if (!read_parameter(part, settings)) {
         reject_unknown(part, names_of(schema()));
       } else if (about.name == "settle" && !may_differ_in_settling(part.key)) {
-        reject_key(part, "has no own value for the packing", "Set it in `base` or in a scale.");
+        reject_key(part, "cannot be set for the settling alone", "Set it in `base` or in a scale.");
       }
     }
   }
@@ -1105,8 +1114,9 @@ struct Reader {
     const bool is_id = start.run.size() >= 8 && start.run.size() <= 64 &&
                        start.run.find_first_not_of("0123456789abcdef") == string::npos;
     if (!is_id || at == string::npos) {
-      return reject_value(*checkpoint, "is not a run id with a whole cycle",
-                          "Write 8 or more digits of the id, @ and the cycle: `0123abcd@10`.");
+      return reject_value(
+          *checkpoint, "does not name a run and a cycle",
+          "Write 8 or more digits of the run's id, @ and the cycle: `0123abcd@10`.");
     }
     Node cycle = *checkpoint;
     cycle.text.erase(0, at + 1);
@@ -1144,11 +1154,12 @@ struct Reader {
                     in.find("show"), fmt::format("cannot be used with {} as x", plot.x),
                     "As x, use `cycle`, a parameter, or a measure with one value for each run.");
     const bool of_runs = plot.show == Show::traces || plot.show == Show::scatter;
-    reject_if(!of_runs || of_run, cycles, "can only be used if x changes within each drawn run",
+    reject_if(!of_runs || of_run, cycles,
+              "can only be used with traces or scatter, and with an x that changes during a run",
               "Use `show: traces`, and `cycle` or a measure as x.");
     reject_if(!plot.figure.empty(), cycles, "cannot be used with figure", "Leave out `figure`.");
     if (also != nullptr && (is_curve || plot.show != Show::mean)) {
-      reject(*also, "can only be used with means", "Leave it out.");
+      reject(*also, "can only be used with `show: mean` and a number as y", "Leave it out.");
     } else if (const string twice = repeated_column(plot); !twice.empty()) {
       reject(also != nullptr ? *also : in, fmt::format("gives two columns the name {}", twice),
              "Rename one of these columns: `also: {NAME: measure}`.");
@@ -1221,7 +1232,7 @@ struct Reader {
       const bool takes_run = named->of_run.value_or(of_run);
       reject_value_if(of_run != takes_run, in.find("estimator"),
                       fmt::format("cannot be used with {}", claim.compare),
-                      fmt::format("Compare a measure with one value for each {}.",
+                      fmt::format("Set `compare` to a measure that has one value for each {}.",
                                   takes_run ? "run" : "checkpoint"));
     }
     for (const char* key : times) {
@@ -1248,8 +1259,8 @@ struct Reader {
   }
 
   // Reports each plot, claim, figure and panel whose name occurs twice or is already the name of a
-  // figure or panel of the supplement. If a figure of the supplement is not in `figures`
-  // (`listed`), the manifest may define parts of this figure.
+  // figure or panel of the supplement. Exception: the manifest may define plots and claims of a
+  // supplement figure that is not in `figures` (`listed`) and that no C++ code computes.
   void check_own_names(std::span<const Figure> supplement, const std::vector<string>& listed) {
     std::vector<std::pair<const Node*, string>> names, figures;  // {node, its figure}
     Names panels;
@@ -1325,7 +1336,7 @@ Manifest read_manifest(string_view text, string_view file, bool shipped) {
     reader.reject_type(root, "a map of keys", "Begin with `experiment: NAME`.");
     problems.raise();
   }
-  // Scales are read last, because each scale begins with the keys that apply to all scales.
+  // Scales are read last, because each scale starts as a copy of the keys that apply to all scales.
   std::stable_partition(root.parts.begin(), root.parts.end(),
                         [](const Node& part) { return part.key != "scales"; });
   if (const Node* settle = root.find("settle")) manifest.base.settle_at = settle->key_at;

@@ -109,7 +109,7 @@ std::span<const Field> schema() {
                      "fluid that drags the grains during shear: `still` is at rest, `cell` moves "
                      "like the walls at the same height (B.3, Eq. S5)"),
       row<&P::gravity_m_per_s2>("gravity_m_per_s2", "g", "m/s^2", {0, 1e6}, kPrepare,
-                                "gravitational acceleration (Table I); 0 turns it off (D)"),
+                                "gravitational acceleration (Table I); 0 turns it off (section D)"),
       row<&P::pressure_Pa>("pressure_Pa", "P", "Pa", {kSmallest, 1e12}, kPrepare,
                            "confining pressure (Table I); pressure_at says where it acts"),
       row<&P::pressure_at>(
@@ -123,7 +123,7 @@ std::span<const Field> schema() {
       row<&P::moving_wall>("moving_wall", "", "", {}, kPrepare,
                            "the wall that moves vertically under the pressure (B.6)"),
       row<&P::height_over_width>("height_over_width", "", "1", {0.1, 100}, kPrepare,
-                                 "nominal height of the cell divided by its width L (E)"),
+                                 "nominal height of the cell divided by its width L (section E)"),
       row<&P::nominal_packing_fraction>(
           "nominal_packing_fraction", "", "1", {1e-9, 0.74}, kPrepare,
           "volume fraction at which N grains fill the nominal cell; fixes L"),
@@ -149,14 +149,15 @@ std::span<const Field> schema() {
       row<&P::settle_time_step_s>("settle_time_step_s", "", "s", {1e-15, 1}, kPrepare,
                                   "time step while settling; independent of the time step of the "
                                   "shear, so that variants of the shear share their packing; "
-                                  "`auto` keeps Table I's fraction of the stability limit"),
+                                  "`auto`: 0.355 times the stability limit, as in Table I"),
       row<&P::settle_force_tolerance>(
           "settle_force_tolerance", "", "1", above(0, 1), kPrepare,
-          "settling ends when the force imbalance of the moving wall and the drag force on this "
-          "wall, both divided by P A_w, are below this value"),
+          "limit of two forces on the moving wall, each divided by P A_w: the force imbalance, and "
+          "the drag force. Settling ends when both forces are below this limit, and the kinetic "
+          "energy is below settle_kinetic_tolerance"),
       row<&P::settle_kinetic_tolerance>("settle_kinetic_tolerance", "", "1", above(0, 1), kPrepare,
-                                        "settling ends only if, in addition, the kinetic energy "
-                                        "per grain, divided by P d^3, is below this value"),
+                                        "limit of the kinetic energy per grain, divided by P "
+                                        "d^3; see settle_force_tolerance"),
       row<&P::settle_time_limit_s>(
           "settle_time_limit_s", "", "s", above(0, 1e6), kPrepare,
           "simulated time after which a run fails if its packing has not settled"),
@@ -177,8 +178,8 @@ std::span<const Field> schema() {
                         "duration of a cycle, 2 pi/omega (Table I: omega = pi rad/s)"),
       row<&P::steps_per_cycle>(
           "steps_per_cycle", "", "1", {4, 1e9}, kShear,
-          "time steps in a cycle (Table I, B.4); `auto` keeps Table I's fraction of the stability "
-          "limit, 0.355"),
+          "time steps in a cycle (Table I, B.4); `auto` keeps the time step at 0.355 times the "
+          "stability limit, as in Table I"),
       row<&P::pause_s>(
           "pause_s", "", "s", above(0, 1e6),
           {.stage = StageKind::shear, .under = ProtocolKind::paused},
@@ -189,7 +190,8 @@ std::span<const Field> schema() {
           {.stage = StageKind::shear, .under = ProtocolKind::paused, .omitted_at = "moving"},
           "whether, during a pause, the moving wall is held at its height or moves under its load"),
       row<&P::cycles>("cycles", "n", "1", {0, 1e6}, kNoKey,
-                      "number of shear cycles; a larger value extends a run"),
+                      "number of shear cycles; if the value is raised later, an existing run "
+                      "continues"),
       row<&P::engine>("engine", "", "", {}, {.stage = StageKind::shear, .omitted_at = "shearcell"},
                       "program that computes the shear. A run with LAMMPS has a different id and "
                       "different rounding errors. shearcell always computes the settling"),
@@ -207,9 +209,11 @@ std::span<const Field> schema() {
       // Stiffening.
       row<&P::stiffness_decades>("stiffness_decades", "", "1", {0, 6}, kNoKey,
                                  "under protocol stiffen: number of powers of ten by which the "
-                                 "stiffness increases (B.2); a larger value extends a run"),
-      row<&P::stiffness_steps_per_decade>("stiffness_steps_per_decade", "", "1", {1, 100}, kStiffen,
-                                          "number of steps that raise the stiffness tenfold (B.2)"),
+                                 "stiffness increases (B.2); if the value is raised later, an "
+                                 "existing run continues"),
+      row<&P::stiffness_steps_per_decade>(
+          "stiffness_steps_per_decade", "", "1", {1, 100}, kStiffen,
+          "number of steps that together raise the stiffness by a factor of ten (B.2)"),
       row<&P::minimize_force_tolerance>(
           "minimize_force_tolerance", "", "1", above(0, 1), kStiffen,
           "after each step the enthalpy is minimized until the largest net force on a grain, "

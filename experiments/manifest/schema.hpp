@@ -20,10 +20,11 @@ namespace shearcell {
 /// How a parameter enters the identity of a run. A parameter of `prepare` enters the records of all
 /// stages, since settling comes first; any other parameter enters the record of its own stage only.
 struct Identity {
-  std::optional<StageKind> stage = {};     ///< first affected stage; empty: not in an id
+  /// The first stage that the parameter affects. Empty: no id depends on the parameter.
+  std::optional<StageKind> stage = {};
   std::optional<ProtocolKind> under = {};  ///< recorded only for this protocol; empty: for all
-  /// The record omits the parameter if it has this value, written as in a manifest. All runs that
-  /// are older than the parameter have this value, which may differ from the default.
+  /// The record omits the parameter if its value_text() is this text. All runs that are older than
+  /// the parameter have this value, which may differ from the default.
   std::string_view omitted_at = {};
   /// Every new record holds this value, whatever the value of the parameter, because the parameter
   /// is no longer part of the identity. Records of older runs may hold other values.
@@ -61,7 +62,8 @@ struct Field {
   bool required = false;
   std::size_t longest = 0;  ///< maximum length of a free text [bytes]
   bool folds = false;       ///< the text may have several lines, which become one
-  /// get() converts a parameter to JSON; set() reads it from valid JSON. Null for other keys.
+  /// get() converts a parameter to JSON; set() reads it from valid JSON. Both are null if the
+  /// key is not a parameter.
   nlohmann::json (*get)(const Parameters&) = nullptr;
   void (*set)(Parameters&, const nlohmann::json&) = nullptr;
 

@@ -64,7 +64,8 @@ std::string remedy_for_width(const Parameters& p, double width) {
     shape.nominal_packing_fraction = fraction;
     return cell_width(shape) - width;
   };
-  if (excess(range.min) < 0 || excess(range.max) > 0) return "Use a file of another size.";
+  if (excess(range.min) < 0 || excess(range.max) > 0)
+    return "No allowed nominal_packing_fraction gives a cell of this width. Use another file.";
   const auto [low, high] = boost::math::tools::bisect(excess, range.min, range.max,
                                                       boost::math::tools::eps_tolerance<double>());
   return fmt::format(
@@ -76,10 +77,11 @@ std::string remedy_for_width(const Parameters& p, double width) {
 /// Places the grains between the wall planes of the cell. Throws ManifestError if the box or the
 /// grains do not fit the width and depth of the cell.
 ///
-/// Without a box, the outermost grains may overlap the side walls as deeply as two grains of the
-/// file overlap: such a packing is under load, or shall relax while it settles. They may always
-/// overlap the walls by `usual_overlap`, because the deepest contact under load can be at a wall.
-/// Deeper overlaps mean that the cell is narrower than the packing.
+/// Without a box, the outermost grains may overlap the side walls as deeply as the most deeply
+/// overlapping pair of grains in the file: the packing may be under load, or relax while it
+/// settles. Overlaps of `usual_overlap` with the walls are always allowed, because the deepest
+/// contact under load can be at a wall. Deeper overlaps mean that the cell is narrower than the
+/// packing.
 State state_in(const Cell& cell, const PackingFile& grains, const std::string& path,
                const Parameters& p) {
   constexpr double tolerance = 1e-6;  // relative to the width
@@ -99,7 +101,7 @@ State state_in(const Cell& cell, const PackingFile& grains, const std::string& p
     if (fits) continue;
     refuse(path, {}, "",
            fmt::format("the {} are {:.9g} d {}, but the cell of the manifest is {:.9g} d",
-                       grains.box ? "box and grains" : "grains", size[axis],
+                       grains.box ? "box and grains" : "grains together", size[axis],
                        axis == 0 ? "wide (x)" : "deep (z)", room),
            "",
            fmt::format("Are the lengths in {}? If not, write the unit in the file (columns x_mm, "
@@ -195,8 +197,8 @@ PackingText read_packing_file(const Manifest& manifest, const Scale& scale) {
 
 PlacedGrains placed(const PackingText& packing, const Parameters& p, std::uint64_t seed,
                     const Poll& poll) {
-  // The first check of a run or of its settling must not fail: a run without settling allows
-  // max_overlap_diameters, and settling allows more while it presses the grains together.
+  // The packing must pass the first overlap check. Without settling, this check allows
+  // max_overlap_diameters. Settling allows larger overlaps while it presses the grains together.
   double limit = p.max_overlap_diameters;
   if (packing.file.settles) limit = std::max(limit, 0.9 * kLargestOverlapLimit);
   const PackingFile grains = read_packing(packing.text, packing.path,
@@ -210,8 +212,8 @@ PlacedGrains placed(const PackingText& packing, const Parameters& p, std::uint64
   const double width = x.maxCoeff() - x.minCoeff() + 1;
   if (!grains.box && width <= made.cell.width - 1 && width >= kShallowestCell) {
     made.warning = fmt::format(
-        "{}: the grains are {:.6g} d wide (x), but the cell of the manifest is {:.6g} d. The cell "
-        "has room for more grains. {}",
+        "{}: the grains together are {:.6g} d wide (x), but the cell of the manifest is {:.6g} d. "
+        "The cell has room for more grains. {}",
         packing.path, width, made.cell.width, remedy_for_width(p, width));
   }
   Contact deepest{};

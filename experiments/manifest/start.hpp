@@ -18,9 +18,9 @@
 namespace shearcell {
 
 /// Returns the run in `known` from which the variant starts. If several runs fit the key `start`,
-/// selects the run with the variant's values of the keys that both experiments sweep. Throws
-/// ManifestError if no run or several runs remain, if the run has no checkpoint at the start cycle,
-/// or if the variant has another cell or other grains.
+/// selects the run that agrees with the variant in each key that the experiments of both sweep.
+/// Throws ManifestError if no run or several runs remain, if the run has no checkpoint at the start
+/// cycle, or if the cell or the grains of the run differ from those of the variant.
 const Stage& recorded_run(const Manifest& manifest, const Scale& scale, const Variant& variant,
                           std::span<const Stage> known);
 
@@ -38,14 +38,14 @@ struct PlacedGrains {
   Cell cell;
   State state;               ///< at step 0; the moving wall is at rest
   std::string read;          ///< what was read; see describe()
-  std::string warning = {};  ///< if the cell is much wider than the grains
+  std::string warning = {};  ///< if the cell has room for more grains
 };
 
 /// Places the grains of the file in the cell that `parameters` define. `seed` decides the positions
 /// of the wall grains. The box of the file must be as wide and deep as the cell. Without a box, the
-/// grains must fit into the cell, and the bottom and top walls touch the outermost grains. No
-/// overlap is larger than the run or its settling allows. Throws ManifestError with the reason and
-/// the remedy.
+/// grains must fit into the cell; the bottom and top walls then touch the outermost grains. Throws
+/// ManifestError with the reason and the remedy, also if an overlap is larger than the run (or its
+/// settling) allows.
 PlacedGrains placed(const PackingText& packing, const Parameters& parameters, std::uint64_t seed,
                     const Poll& poll = {});
 

@@ -96,7 +96,7 @@ std::string suggest_name(string_view unknown, std::span<const string_view> candi
   for (const string_view candidate : candidates) {
     const Field* field = find_field(candidate);
     if (field != nullptr && field->symbol == unknown) return std::string(candidate);
-    // `mass` lacks the unit of mass_kg. A parameter without a unit has no such short form.
+    // `mass` is a short form of mass_kg. A parameter without a unit has no short form.
     const bool can_be_short = field == nullptr || has_unit(*field);
     if (can_be_short && lower(candidate).starts_with(written + "_")) return std::string(candidate);
   }

@@ -21,9 +21,10 @@ struct Tried {
   std::string_view remark;   ///< what to write, in whole sentences; may be empty
 };
 
-/// Finds `name` in the table of tried names. An entry with a remark also matches if `name` contains
-/// its words (`coefficient_of_friction` contains `friction`). Of the matches, returns the first
-/// whose `instead` is one of `candidates`, otherwise the first with a remark. Null if none matches.
+/// Finds `name` in the table of names that users try. An entry with a remark also matches if `name`
+/// contains one of the entry's names (`coefficient_of_friction` contains `friction`). Returns the
+/// first matching entry whose `instead` is one of `candidates`; if there is none, the first
+/// matching entry with a remark; otherwise null.
 const Tried* find_tried(std::string_view name, std::span<const std::string_view> candidates);
 
 /// The candidate that `unknown` probably means: found by a parameter's symbol (`N`), by its name

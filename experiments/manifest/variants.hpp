@@ -30,8 +30,9 @@ struct Variant {
   std::uint64_t seeds = std::numeric_limits<std::uint64_t>::max();
 };
 
-/// Writes "key=value" without spaces around its words. Replaces the symbols and units of
-/// variant_names(): "P=954 Pa" gives "pressure_Pa=954".
+/// Removes the spaces around the key and the value of "key=value". If the key is a symbol, as in
+/// variant_names(), writes the name of the parameter and no unit: "P=954 Pa" gives
+/// "pressure_Pa=954".
 std::string same_spelling(std::string_view part);
 
 /// Selects variants, experiments or seeds by texts from the command line. A variant such as
@@ -43,11 +44,12 @@ class Filter {
   explicit Filter(const std::vector<std::string>& wanted);
   explicit Filter(const std::vector<std::uint64_t>& wanted);
 
-  /// Whether the value is selected. The value has its own parts and the parts of its display name,
-  /// `name`. It must fit at least one text of each key: the texts "a=1", "a=2" and "b=3" select
-  /// values with b=3 that also have a=1 or a=2. Returns true if no texts were given.
+  /// Whether the value is selected. The parts of `name`, the display name of the value, count as
+  /// parts of the value. The value must fit at least one text of each key: the texts "a=1", "a=2"
+  /// and "b=3" select values with b=3 that also have a=1 or a=2. Returns true if no texts were
+  /// given.
   bool passes(const std::string& value, const std::string& name = "");
-  /// The first of the given texts that no value has fitted so far, or null.
+  /// The first of the given texts that none of the values in seen() fits, or null.
   const std::string* unfound() const;
   /// The values that passes() was called with, each once, in order. A value is followed by its
   /// display name if the name has parts that the value lacks.
@@ -64,9 +66,11 @@ class Filter {
   std::set<std::string> known_;  ///< the values in seen_
 };
 
-/// Whether the label applies to the variant, an object of swept keys and values (is_within()).
+/// Whether the label applies to the variant, an object of swept keys and values. is_within()
+/// compares the values.
 bool selects(const VariantLabel& label, const nlohmann::json& variant);
-/// Whether the variant, an object of swept keys and values, has the values `where` (is_within()).
+/// Whether the variant, an object of swept keys and values, has the values `where`. is_within()
+/// compares the values.
 bool has_values(const nlohmann::json& variant, const nlohmann::json& where);
 
 /// Variant::swept of each variant.

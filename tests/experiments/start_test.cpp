@@ -489,8 +489,10 @@ TEST_F(FromAFile, WhatDoesNotFitTheCellIsRefusedWithTheRemedy) {
   EXPECT_EQ(refusal_of(manifest("", two)), "");
   write_grains("x_d,y_d,z_d\n1,1,1\n9,1,1\n");
   const std::string wide = refusal_of(manifest("", two));
-  EXPECT_NE(wide.find("grains.csv: the grains are 9 d wide (x), but the cell of the manifest is "),
-            std::string::npos)
+  EXPECT_NE(
+      wide.find(
+          "grains.csv: the grains together are 9 d wide (x), but the cell of the manifest is "),
+      std::string::npos)
       << wide;
   const std::size_t at = wide.find("`nominal_packing_fraction: ");
   ASSERT_NE(at, std::string::npos) << wide;
@@ -517,7 +519,7 @@ TEST_F(FromAFile, AWrongUnitIsAskedAbout) {
   EXPECT_EQ(refusal_of(manifest("", two)), "");
   write_grains("x_m,y_m,z_m\n3,3,3\n9,3,3\n");
   const std::string in_mm = refusal_of(manifest("", two));
-  EXPECT_NE(in_mm.find("the grains are 2001 d wide (x)"), std::string::npos) << in_mm;
+  EXPECT_NE(in_mm.find("the grains together are 2001 d wide (x)"), std::string::npos) << in_mm;
   EXPECT_NE(in_mm.find("Are the lengths in m? If not, write the unit in the file (columns x_mm, "
                        "y_mm, z_mm; or length_unit=mm) or in the manifest (`unit: mm`)."),
             std::string::npos)
@@ -550,10 +552,11 @@ TEST_F(FromAFile, ACellNarrowerThanTheGrainsIsRefused) {
       EXPECT_EQ(settling, "") << "the grains overlap each other as deeply as the walls";
       continue;
     }
-    EXPECT_NE(settling.find(spacing == 1 ? "the grains are 4 d wide (x), but the cell of the "
-                                           "manifest is 3.60599"
-                                         : "the grains are 4.3 d wide (x)"),
-              std::string::npos)
+    EXPECT_NE(
+        settling.find(spacing == 1 ? "the grains together are 4 d wide (x), but the cell of the "
+                                     "manifest is 3.60599"
+                                   : "the grains together are 4.3 d wide (x)"),
+        std::string::npos)
         << settling;
     const std::string at_once = refusal_of(manifest("", base));
     for (const char* rest : {"", "settle: {}\n"}) {
@@ -585,13 +588,14 @@ TEST_F(FromAFile, ACellMuchWiderThanTheGrainsIsWarnedOf) {
                                         "0.1\n  nominal_packing_fraction: {}\n",
                                         fraction)))
             .warnings;
-    EXPECT_EQ(std::ranges::count_if(warnings,
-                                    [](const std::string& one) {
-                                      return one.find(
-                                                 "grains.csv: the grains are 4 d wide (x), "
-                                                 "but the cell of the manifest is ") != one.npos;
-                                    }),
-              warned ? 1 : 0)
+    EXPECT_EQ(
+        std::ranges::count_if(warnings,
+                              [](const std::string& one) {
+                                return one.find(
+                                           "grains.csv: the grains together are 4 d wide (x), "
+                                           "but the cell of the manifest is ") != one.npos;
+                              }),
+        warned ? 1 : 0)
         << fraction;
   }
 }
