@@ -793,8 +793,12 @@ void name_y(const PlotSpec& plot, std::size_t k, bool alone, Series& series) {
   const auto [measure, name] = measures_of(plot)[k];
   // If a panel has one curve, its columns differ in colour and symbol. In panels with several
   // curves, the columns of one curve differ only in symbol.
-  if (alone) series.colour = safe_colours[k % safe_colours.size()];
-  series.point = alone ? curve_symbol(k) : series.point - static_cast<int>(k % 2);
+  if (alone) {
+    series.colour = safe_colours[k % safe_colours.size()];
+    series.point = curve_symbol(k);
+  } else if (series.point > 0 && k % 2 == 1) {
+    series.point ^= 1;  // open instead of filled, or filled instead of open
+  }
   const Axis axis = axis_of(measure);
   Text label = !axis.symbol.empty() ? axis.symbol
                : name.empty()       ? axis.name

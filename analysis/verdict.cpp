@@ -172,9 +172,8 @@ std::string numbers_of(const Verdict& verdict) {
   std::string text =
       verdict.estimate ? estimate_with_interval(verdict) : std::string("not measured");
   const std::string times = factor(verdict.margin);
-  text += verdict.waits_for.empty()
-              ? fmt::format(", margin {:.3g}", verdict.margin)
-              : ", margin: " + (times == "2.0" ? "2 times" : times + " times");
+  text += verdict.waits_for.empty() ? fmt::format(", margin {:.3g}", verdict.margin)
+                                    : ", margin: " + (times == "2.0" ? "twice" : times + " times");
   text += fmt::format(", {}{}",
                       counted(verdict.runs, verdict.counted == Counted::pairs ? "pair" : "run"),
                       verdict.counted == Counted::runs_per_variant ? " per variant" : "");

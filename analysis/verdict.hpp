@@ -111,7 +111,7 @@ nlohmann::json to_json(std::span<const Verdict> verdicts);
 
 /// "0.0012, 90 % interval -0.0003 to 0.0027, margin 0.001, 6 runs per variant (24 needed)". For
 /// waiting times: "the first group is 2.1 times later, 90 % interval 1.3 times later to 3.4 times
-/// later, margin: 2 times, 6 runs per variant".
+/// later, margin: twice, 6 runs per variant".
 std::string numbers_of(const Verdict& verdict);
 
 /// The quantity, numbers_of() and the note, as the terminal and the report print them:

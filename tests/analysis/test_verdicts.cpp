@@ -111,9 +111,8 @@ TEST(Verdict, WaitsAreComparedInWords) {
   verdict.waits_for = "the onset";
   verdict.runs = 6;
   verdict.counted = Counted::runs_per_variant;
-  EXPECT_EQ(
-      result_of(verdict),
-      "cycle of the onset (log-rank test): not measured, margin: 2 times, 6 runs per variant");
+  EXPECT_EQ(result_of(verdict),
+            "cycle of the onset (log-rank test): not measured, margin: twice, 6 runs per variant");
   const auto words = [&](double estimate, double low, double high) {
     verdict.estimate = estimate;
     verdict.interval = {low, high};
