@@ -767,8 +767,8 @@ std::string note_of(const Panel& panel, std::size_t with_value) {
   std::string note;
   if (censored > 0) {
     add_note(note,
-             fmt::format("{} of {} runs end before {} and enter the means as censored", censored,
-                         runs, find_measure(panel.plot.y, MeasureKind::run)->reach));
+             fmt::format("{} of {} runs end before {}; the means use their censored values",
+                         censored, runs, find_measure(panel.plot.y, MeasureKind::run)->reach));
   }
   if (const std::size_t without = runs - with_value - censored; without > 0) {
     add_note(note, fmt::format("{} of {} runs have no value and are left out of the means", without,
@@ -857,7 +857,8 @@ Table draw(const Panel& panel) {
       drawn.points = mean_points(what, bins, k);
       if (k == 0 && what == Against::cycle && !bins.empty() &&
           follow_runs(curve, bins.back().at, columns[0].rms, drawn, single)) {
-        table.chart.note = "Thin lines: single runs, after the shortest run of the curve has ended";
+        table.chart.note =
+            "Thin lines: single runs, drawn where the shortest run of the curve has ended";
       }
       if (plot.drawn == 0) continue;
       name_y(plot, k, panel.curves.size() == 1, drawn);

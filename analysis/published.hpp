@@ -22,18 +22,19 @@ inline constexpr std::array published_amplitudes = {
     PublishedAmplitude{0.0667, 13, 40},
     PublishedAmplitude{
         0.0833, 16, 15,
-        "a study with 8 runs, about as many as the supplement has, can find a critical size above "
-        "or below 12 grains, the lower limit of the margin; more runs of ours cannot change this"},
+        "the published size comes from about 8 runs; another study with 8 runs may find a size on "
+        "either side of 12 grains, the lower limit of the margin; more runs of ours do not make "
+        "the published size more certain"},
     PublishedAmplitude{
         0.1, 20, 1,
-        "our critical size, 25.3 grains from 40 runs, is near 25 grains, the upper limit of the "
-        "margin; a study with 8 runs, about as many as the supplement has, can find a size above "
-        "or below this limit"}};
+        "our critical size (25.3 grains, from 40 runs) is near the upper limit of the margin, 25 "
+        "grains; a study with about 8 runs, as in the supplement, may find a size on either side "
+        "of this limit"}};
 /// Why it cannot be decided whether the critical size grows with A.
 inline constexpr const char* growth_cannot_be_decided =
-    "whether the size grows with A depends on the number of cycles over which crystallites are "
-    "followed: with 1 cycle the size grows, with 20 cycles it falls, and with 5 cycles the "
-    "ratio of the sizes is near 1, the threshold of the claim";
+    "the answer depends on the number of cycles over which crystallites are followed: with 1 cycle "
+    "the critical size grows with A; with 20 cycles it falls; with 5 cycles the ratio of the "
+    "critical sizes is near 1, the threshold of the claim";
 
 /// Returns the published amplitude that is nearest to `amplitude_rad`. The numbers published for it
 /// are also used for `amplitude_rad`. [choice]

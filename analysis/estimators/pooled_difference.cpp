@@ -83,14 +83,16 @@ Verdict decide_pooled(const ClaimSpec& claim, const Claim& stated, RunGroup a, R
     estimate = estimate_with(value, {value - half, value + half}, t, std::min(runs[0], runs[1]));
     estimate->groups = 2;
   }
-  Verdict verdict = decide(
-      stated, "pooled difference in " + number.name, estimate, std::min(runs[0], runs[1]),
-      strata.empty()
-          ? std::string(no_group)
-          : fmt::format("{} and {} runs on the two sides, from {} of {} (in a group all other "
-                        "parameters are equal); each side of a group needs at least {} values",
-                        runs[0], runs[1], pooled, counted(strata.size(), "group"), least_runs),
-      std::move(entered), Counted::runs_per_variant);
+  Verdict verdict =
+      decide(stated, "pooled difference in " + number.name, estimate, std::min(runs[0], runs[1]),
+             strata.empty()
+                 ? std::string(no_group)
+                 : fmt::format(
+                       "{} and {} runs on the two sides, from {} of {}; the runs of a group differ "
+                       "only in the compared parameter and the seed, and each side of a group "
+                       "needs at least {} values",
+                       runs[0], runs[1], pooled, counted(strata.size(), "group"), least_runs),
+             std::move(entered), Counted::runs_per_variant);
   verdict.censored = censored;
   return verdict;
 }

@@ -169,8 +169,9 @@ std::string why_undefined(const Amplitude& one) {
       grown_share(sum_of(one.crystallites, chosen_rule, followed_bins[0], followed_bins[1]));
   if (*q <= rare || !smallest || *smallest > *q) return "";
   return fmt::format(
-      "no critical size is defined: a fraction {:.2g} of the controls form a crystallite of {} "
-      "grains, but only a fraction {:.2g} of the crystallites of {} to {} grains grow",
+      "no critical size is defined: in a fraction {:.2g} of the controls a crystallite of {} "
+      "grains "
+      "forms, but only a fraction {:.2g} of the crystallites of {} to {} grains grow",
       *q, grown_size, *smallest, followed_bins[0], followed_bins[1] - 1);
 }
 

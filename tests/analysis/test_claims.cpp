@@ -249,8 +249,8 @@ TEST(PooledDifference, ComparesRunsWithEqualParameters) {
   EXPECT_EQ(pooled.runs, 8U);
   EXPECT_EQ(
       pooled.note,
-      "8 and 8 runs on the two sides, from 2 of 3 groups (in a group all other parameters are "
-      "equal); each side of a group needs at least 3 values");
+      "8 and 8 runs on the two sides, from 2 of 3 groups; the runs of a group differ only in the "
+      "compared parameter and the seed, and each side of a group needs at least 3 values");
 }
 
 // Expected: the ratios at which the test of Pitman and Morgan has p = 0.1, by scipy.stats.

@@ -354,7 +354,7 @@ TEST(OwnPlot, OfTheOnsetOfEachRunWithAClaim) {
                                "runs_began_after,runs_unclear\nall,0.001,0.621,"))
       << to_csv(drawn.tables.at(0));
   EXPECT_TRUE(has(caption_of("", drawn.tables),
-                  "1 of 9 runs end before the onset and enter the means as censored"));
+                  "1 of 9 runs end before the onset; the means use their censored values"));
   ClaimSpec claim{.id = "own",
                   .compare = "onset_size_phi",
                   .between = {{{{"drag_kg_per_s", 0.002}}, {{"drag_kg_per_s", 0.001}}}},
