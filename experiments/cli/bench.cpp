@@ -45,7 +45,8 @@ void speed(bench::SpeedOptions& options, Context& context) {
 void add_speed(CLI::App& bench, Context& context) {
   const auto [command, options] = add_command(
       bench, context, "speed",
-      "Measure how fast a sheared cell runs, and the time share of each part of a step", speed);
+      "Measure the speed of simulated shear, and the fraction of time for each part of a step",
+      speed);
   add_number(*command, "--size", options->sizes, "Numbers of grains", "N", 1, 100'000'000)
       ->capture_default_str();
   add_number(*command, "--threads", options->threads, "Numbers of threads in one run", "T", 1, 1024)

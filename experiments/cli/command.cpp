@@ -76,8 +76,9 @@ bool starts_from_a_run(const Manifest& manifest) {
                              [](const Scale& scale) { return scale.start.is_recorded(); });
 }
 
-// Sorts the manifests so that each run comes after the run from which it starts. A `start` may
-// omit the experiment and mean any, so the manifests that start from no run come first.
+// Sorts the manifests so that each run comes after the run from which it starts. A `start` without
+// an experiment may refer to a run of any experiment, so manifests whose runs do not start from
+// other runs come first.
 void order_by_start(std::vector<Manifest>& manifests) {
   std::ranges::stable_partition(manifests, std::not_fn(starts_from_a_run));
   for (auto next = manifests.begin(); next != manifests.end(); ++next) {
@@ -91,13 +92,14 @@ void order_by_start(std::vector<Manifest>& manifests) {
       });
     };
     const auto ready = std::find_if_not(next, manifests.end(), waits);
-    if (ready == manifests.end()) return;  // a loop; expand() reports the missing runs
+    if (ready == manifests.end()) return;  // circular starts; expand() reports the missing runs
     std::rotate(next, ready, ready + 1);
   }
 }
 
-// Figures show only the runs of the newest manifest of each experiment and scale. Warns if figures
-// will therefore omit runs of the store, or of a manifest before this one, after this plan is run.
+// Figures show only the runs of the newest manifest of each experiment and scale. Warns if, after
+// this plan is run, figures will omit runs of `known`: runs in the store or in earlier plans of the
+// same command.
 void warn_of_other_version(const Plan& plan, const std::vector<Stage>& known, Context& context) {
   const Manifest& manifest = plan.manifest;
   std::set<std::string> planned;
@@ -114,8 +116,9 @@ void warn_of_other_version(const Plan& plan, const std::vector<Stage>& known, Co
   warn(context,
        fmt::format(
            "{}: the newest manifest of experiment {} differs from this file and has {} "
-           "that this plan lacks. After this manifest is run, figures omit these runs. To show "
-           "all runs, run one manifest that lists all of them; only missing runs are computed.",
+           "that the plan of this file lacks. After this plan is run, figures omit these runs. "
+           "To show all runs, run one manifest that lists all of them; only missing runs are "
+           "computed.",
            manifest.file, manifest.experiment, counted(static_cast<std::size_t>(left_out), "run")));
 }
 

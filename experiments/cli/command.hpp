@@ -105,8 +105,9 @@ void add_expand_options(CLI::App& command, ExpandOptions& options);
 
 /// Reads and expands each manifest once. If the runs of manifest B start from runs of manifest A, A
 /// comes before B in the result. Passes all warnings to warn(). Also warns of each manifest that
-/// lacks runs of another version of it, in the store or earlier in the result. If `brief` is true
-/// and a manifest has more than three warnings, prints the first warning and counts the others.
+/// lacks runs of another version of the same manifest. This other version may be in the store or
+/// may come earlier in the result. If `brief` is true and a manifest has more than three warnings,
+/// prints the first warning and counts the others.
 std::vector<Plan> load_plans(const std::vector<std::string>& paths, const ExpandOptions& options,
                              Context& context, bool brief = true);
 

@@ -47,7 +47,8 @@ Check memory() {
     if (word == "MemAvailable:" && facts >> kib) bytes = std::min(bytes, 1024 * kib);
   }
   return {"memory", format_bytes(bytes) + " free", "ok",
-          fmt::format("enough for {:.1e} grains in total, in all runs", bytes / kRunBytesPerGrain)};
+          fmt::format("enough for {:.1e} grains, summed over the runs computed at the same time",
+                      bytes / kRunBytesPerGrain)};
 }
 
 Check disk(const fs::path& place) {

@@ -255,7 +255,8 @@ std::vector<PlacedRun> wanted_runs(const Store& store, const ExportOptions& opti
   return runs;
 }
 
-/// Name of a run's file or folder in PATH, such as "drag_fluid=still_seed1_3f9a52c1.xyz".
+/// Name of a run's file or folder in the folder given with --out, such as
+/// "drag_fluid=still_seed1_3f9a52c1.xyz".
 std::string entry_name(const PlacedRun& run, const ExportFormat& format) {
   const Place place = shown_place(run);
   std::string name =
@@ -271,7 +272,7 @@ std::string entry_name(const PlacedRun& run, const ExportFormat& format) {
 
 struct Exported {
   std::string run;  ///< id of the run
-  fs::path out;     ///< where the run was written: PATH, or a file or folder in PATH
+  fs::path out;     ///< where the run was written: the path given with --out, or a path in it
   std::vector<std::string> files;
 };
 

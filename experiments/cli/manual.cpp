@@ -134,7 +134,8 @@ std::string command_reference(const CLI::App& command, const std::string& path) 
   if (const std::string rows = positionals + options; !rows.empty()) {
     text += "\n| argument | meaning |\n|---|---|\n" + rows;
   }
-  // The help texts of `table` and `figures` are left out: the manual already has their lists.
+  // Leaves out the help texts of `table` and `figures`, because the sections Measures and Figures
+  // contain the same lists.
   const bool listed = command.get_name() == "table" || command.get_name() == "figures";
   if (!command.get_footer().empty() && !listed) {
     text += fmt::format("\n```text\n{}\n```\n", command.get_footer());

@@ -84,7 +84,8 @@ const std::vector<std::string> kLammpsCaveats = {
     "LAMMPS computes only the shear. shearcell settles the packings of all runs.",
     "The results of LAMMPS differ from those of shearcell by rounding errors, which depend on "
     "the number of processes.",
-    "A run gets another id if LAMMPS computes it. verify --replay, regenerate and prune skip it.",
+    "A run that LAMMPS computes has another id than the same run computed by shearcell. verify "
+    "--replay, regenerate and prune skip the runs of LAMMPS.",
     "In runs by LAMMPS, the watchdog checks only checkpoints, not every 1024th step. These runs "
     "fail if the centre of a grain reaches the plane of a wall."};
 
@@ -167,7 +168,8 @@ void note_looks(const std::vector<Plan>& plans, const std::vector<Line>& lines, 
           plan.manifest.experiment, *next, counted(scale.seeds.values.size(), "seed"),
           left_at(*next),
           powers.empty()
-              ? "The chance that it decides a claim is known after `figures` has measured some runs"
+              ? "The chance that this look decides a claim is known after `figures` has measured "
+                "some runs"
               : fmt::format("If the present estimates are the true values, each claim is decided "
                             "at or before this look with probability: {}",
                             fmt::join(powers, ", "))));
@@ -209,10 +211,13 @@ void print_until(const std::vector<Line>& lines, const nlohmann::json& left, dou
   if (ends.empty()) return;
   fmt::print("      `until` ({}): ", fmt::join(ends, "; "));
   if (left.is_null()) {
-    fmt::print("fewer particle-steps; an estimate needs a run that `until` has ended\n");
+    fmt::print(
+        "fewer particle-steps; no estimate before each condition has ended at least one run\n");
   } else {
-    fmt::print("about {:.3g} particle-steps ({:.0f} %) if runs end like earlier runs\n",
-               left.get<double>(), at_most > 0 ? 100 * left.get<double>() / at_most : 100);
+    fmt::print(
+        "about {:.3g} particle-steps ({:.0f} % of those above) if these runs end at the "
+        "mean cycle at which `until` ended earlier runs\n",
+        left.get<double>(), at_most > 0 ? 100 * left.get<double>() / at_most : 100);
   }
 }
 
@@ -289,7 +294,7 @@ void plan(const PlanOptions& options, Context& context) {
   Work left;
   for (const Line& line : lines) left.add(line.stage, line.look, rates);
   const nlohmann::json with_until = left_until(lines, runs);
-  std::set<const PlannedRun*> left_runs;  // unfinished runs; one core computes each run
+  std::set<const PlannedRun*> left_runs;  // unfinished runs; each run uses one core
   std::size_t runs_planned = 0, longer = 0;
   for (const Line& line : lines) {
     runs_planned += is_packing(line) ? 0 : 1;

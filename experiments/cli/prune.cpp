@@ -41,9 +41,10 @@ std::vector<CheckpointRecord> prunable(const PruneOptions& options, const Store&
   PruneChoice choice = options.choice;
   const bool filtered = options.selection != RunSelection{};
   if (choice.runs.empty() && !filtered && choice.keep_every == 0 && !choice.last_too) {
-    throw CLI::ValidationError("prune",
-                               "choose what to delete: --keep-every K, --experiment E, --state "
-                               "STATE, --last-too, or runs; see prune --help");
+    throw CLI::ValidationError(
+        "prune",
+        "choose which files to delete or keep: give runs, --experiment E, --state "
+        "STATE, --keep-every K or --last-too; see prune --help");
   }
   for (std::string& run : choice.runs) run = store.find_stage(run).id;
   if (filtered) {
@@ -138,7 +139,7 @@ void prune(const PruneOptions& options, Context& context) {
                 {"pruned", go},
                 {"bytes_freed", freed.bytes}});
   } else if (go) {
-    fmt::print("{} measured, {} freed; `shearcell regenerate` recomputes the files\n",
+    fmt::print("{} measured, then {} freed; `shearcell regenerate` recomputes the deleted files\n",
                counted(freed.measured, "checkpoint"),
                format_bytes(static_cast<double>(freed.bytes)));
   } else if (any) {
@@ -309,7 +310,8 @@ void add_regenerate(CLI::App& app, Context& context) {
                       "SHA-256 hashes of checkpoints, or beginnings of these hashes");
   add_selection_options(*command, options->selection, true);
   command->add_flag("--all", options->all, "Recompute all missing or damaged files of the store");
-  add_threads_option(*command, options->threads, "Number of threads; useful for large cells");
+  add_threads_option(*command, options->threads,
+                     "Number of threads; more than one is useful for large cells");
   add_common_options(
       *command, context,
       R"(Recomputes each state from the nearest earlier checkpoint that has a file. If there is no such

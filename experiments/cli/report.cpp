@@ -86,7 +86,8 @@ void add_report(CLI::App& app, Context& context) {
       ->type_name("FILE");
   add_selection_options(*sub, options.runs);
   sub->get_option("--scale")->expected(1)->description(
-      "Only runs of this scale (default: all; figures show only the scale of the run added last)");
+      "Only runs of this scale (default: runs of all scales, but figures of only one scale: that "
+      "of the run added last)");
   sub->add_option("--run", packings.runs,
                   "Show these runs in 3D instead of the last run of each variant")
       ->type_name("RUN");
@@ -94,7 +95,8 @@ void add_report(CLI::App& app, Context& context) {
              "Largest number of runs shown in 3D for each experiment")
       ->capture_default_str();
   add_number(*sub, "--frames", packings.frames,
-             "Largest number of checkpoints (evenly spaced) of each run in 3D", "N", 1, 100000)
+             "Largest number of checkpoints, evenly spaced, shown in 3D for each run", "N", 1,
+             100000)
       ->capture_default_str();
   add_number(*sub, "--packings-mb", command->megabytes,
              "Largest total size of packings in 3D; checkpoints that do not fit are left out", "MB",

@@ -220,7 +220,7 @@ void add_worker_options(CLI::App& command, RunOptions& options) {
   add_number(command, "--jobs,-j", options.jobs,
              "Number of runs computed at a time (default: one per core)", "J", 1, 1024);
   add_threads_option(command, options.parallel.threads,
-                     "Threads inside each run; useful for large cells");
+                     "Threads inside each run; more than one is useful for large cells");
   add_number(command, "--mpi", options.parallel.ranks,
              "MPI processes of each LAMMPS run; this number affects the last digits of results",
              "N", 1, 65536);

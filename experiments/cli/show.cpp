@@ -61,8 +61,9 @@ std::vector<Facts> facts_of_all(const Store& store, const Stage& stage,
   });
 }
 
-/// The measures of the checkpoint, as in `table`. Measures that are not cached are computed. The
-/// file is checked even if all measures are cached.
+/// The measures of the checkpoint, under the column names of `shearcell table`. Measures that are
+/// not cached are computed. The file of a checkpoint in the state `recorded` is checked even if all
+/// measures are cached.
 Facts measures_at(const Store& store, const CheckpointRecord& record, Context& context) {
   CheckpointMeasures one{record};
   const ToMeasure todo{&one};
@@ -90,7 +91,7 @@ Facts newest_measures(const Store& store, const std::vector<CheckpointRecord>& c
   return {};
 }
 
-/// The engine that an attempt recorded last; null if shearcell itself computed the run.
+/// The engine of the last attempt that recorded an engine; null if shearcell computed the run.
 nlohmann::json engine_of_run(const Store& store, const std::string& run) {
   nlohmann::json engine;
   const RunLineage stage = run_lineage(store, run).back();
@@ -377,7 +378,8 @@ Facts facts_of(const std::filesystem::path& file, const PublishedFile& found,
   return {{"file", file.string(), "file"},
           {"verdict", matches ? "matches" : "changed", "verdict",
            fmt::format("{} event {}{}", matches ? "matches what" : "WAS CHANGED since",
-                       found.record.seq, matches ? " recorded" : ", or another store made it")},
+                       found.record.seq,
+                       matches ? " recorded" : ", or the file is from another store")},
           {"sha256", found.sha256, "is", matches ? "" : found.sha256},
           {"recorded_sha256", found.recorded, "was", matches ? "" : found.recorded},
           {"inputs", inputs, "inputs", text},

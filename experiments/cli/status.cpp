@@ -149,11 +149,11 @@ Facts facts(const PlacedRun& listed, const Membership& shown, const View& view) 
 /// The remaining work, and the time that this work will take at the mean speed so far. Stages that
 /// failed or cannot start are left out.
 struct Estimate {
-  std::string problem;  ///< why the work is unknown: this version cannot read a record; or ""
+  std::string problem;  ///< why the work is unknown (a run cannot be read); "" if it is known
   Work work;
   std::size_t at_a_time = 1;  ///< number of stages computed at a time
-  bool running = false;       ///< whether a run is computed now; if not, the time is for all cores
-  bool at_most = false;       ///< the time is an upper limit: `until` may end runs early
+  bool running = false;  ///< whether a run is computed now; if not, seconds() assumes all cores
+  bool at_most = false;  ///< the time is an upper limit: `until` may end runs early
 
   bool any() const { return problem.empty() && work.stages > 0; }
   double seconds() const { return work.seconds(at_a_time); }

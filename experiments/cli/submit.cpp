@@ -227,7 +227,8 @@ void add_job_options(CLI::App& command, SubmitOptions& options) {
              "Cores of each task; more cores compute more runs at a time (default: one core per "
              "run, at most 16)",
              "C", 1, 1024);
-  add_threads_option(command, job.threads, "Threads inside each run; useful for large cells");
+  add_threads_option(command, job.threads,
+                     "Threads inside each run; more than one is useful for large cells");
   command
       .add_option("--scratch", job.scratch,
                   "Folder on each node's own disk to work in, such as /scratch or '$TMPDIR'. The "

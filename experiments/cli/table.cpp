@@ -91,11 +91,11 @@ void add_table(CLI::App& app, Context& context) {
       "Columns (swept parameters add columns after the seed; an empty field is unknown or does not "
       "apply):\n" +
           columns_text +
-          "Simulated columns need an option, such as --rest. critical_size and all columns below "
-          "it need\n--per run, which measures the newest checkpoint of each run. A run that "
-          "several "
-          "experiments share\nhas rows for each experiment, up to the cycles that the experiment "
-          "asks for.\n\nCurves:\n" +
+          "Columns whose values need a simulation are written only with an option, such as "
+          "--rest.\ncritical_size and all columns below it are written only with --per run. With "
+          "--per run, all other\nmeasures are those of the newest checkpoint of each run. A run "
+          "that several experiments share has\nrows for each experiment, up to the cycles that "
+          "the experiment asks for.\n\nCurves:\n" +
           curves_text +
           "Examples:\n"
           "  shearcell table --experiment drag --out drag.csv\n"

@@ -227,7 +227,8 @@ void add_verify(CLI::App& app, Context& context) {
   add_number(*command, "--measures", options->measures,
              "Recompute the cached measures of K sampled checkpoints (default: 8)", "K");
   add_number(*command, "--seed", options->seed, "Random seed (default: from the last event)");
-  add_threads_option(*command, options->threads, "Threads of a replay; useful for large cells");
+  add_threads_option(*command, options->threads,
+                     "Threads of a replay; more than one is useful for large cells");
   add_common_options(
       *command, context,
       R"(Proves that no event or file was changed or lost, and that the tables follow from the events. Each

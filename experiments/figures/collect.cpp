@@ -222,7 +222,7 @@ std::vector<Run> runs_of(const Store& store, const WantedFigure& wanted,
 }
 
 /// The scale of the run that was declared last. Runs of older manifest versions are considered only
-/// if no run belongs to a newest version.
+/// if no run belongs to the newest version of its experiment's manifest.
 std::string last_scale(const std::vector<Run>& runs,
                        const std::vector<RegisteredManifest>& manifests) {
   const auto is_newest = [&](const Run& run) {
@@ -334,8 +334,8 @@ WantedFigures wanted_figures(const Store& store, const std::vector<std::string>&
   }
   for (const Figure& figure : all_figures()) {
     if (!is_across(figure) || manifests.empty() || !asked(figure.name)) continue;
-    // Without `names`, table1 is drawn if a manifest lists figures of the supplement, and a figure
-    // that compares experiments is drawn if the store has two or more experiments that it compares.
+    // Without `names`, table1 is drawn if a manifest lists figures of the supplement. A figure that
+    // compares experiments is drawn if at least two of these experiments are registered.
     const auto lists_any = [](const RegisteredManifest& one) { return !one.figures.empty(); };
     const auto registers = [&](const std::string& of) { return among(registered, of); };
     const bool has_runs = figure.of.empty() ? std::ranges::any_of(manifests, lists_any)

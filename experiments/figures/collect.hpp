@@ -27,15 +27,15 @@ struct WantedFigure {
   /// The manifests of the store. All figures of one command share them, so that each manifest is
   /// read only once. If null, collect_runs() reads the manifests.
   ReadManifests manifests = {};
-  /// Names the version of this program if the program defines the figure's plots, because the
-  /// manifest does not. (Older manifests only list the name of the figure.) Otherwise "".
+  /// If this program, not the manifest, defines the figure's plots: a text that names the version
+  /// of the program. Otherwise "". (Older manifests only list names of figures.)
   std::string plots = {};
 
   /// "drag/S2", for messages.
   std::string path() const;
 };
 
-/// The figures that registered manifests list or define.
+/// The figures that are listed or defined in registered manifests.
 struct WantedFigures {
   /// Sorted by experiment; figures of all experiments are last. Within an experiment, figures that
   /// the manifest lists in `figures` come before figures that its `plots` and `claims` define.
@@ -44,9 +44,9 @@ struct WantedFigures {
 };
 
 /// Returns the figures, plots and claims of the newest manifests that have one of `names` and
-/// belong to one of `experiments`. An empty list excludes nothing. If both lists are given, `names`
-/// may contain figures that these manifests do not list. Throws NotFound for an unknown figure or
-/// experiment; the message proposes the nearest name.
+/// belong to one of `experiments`. An empty list excludes nothing. If both lists are given, a named
+/// figure of all_figures() is returned even for experiments whose manifests do not list the figure.
+/// Throws NotFound for an unknown figure or experiment; the message proposes the nearest name.
 WantedFigures wanted_figures(const Store& store, const std::vector<std::string>& names = {},
                              const std::vector<std::string>& experiments = {});
 
@@ -64,8 +64,8 @@ std::vector<FrameRun> frame_runs(std::vector<Run> selected, std::vector<std::str
 /// cycle that the run's stage has reached.
 void leave_out_unmeasured(FrameRun& run);
 
-/// Measures the checkpoints of the runs. Earlier checkpoints at whole cycles are used only at the
-/// interval that the run's experiment requests.
+/// Measures the checkpoints of the runs. For a measure that needs an earlier checkpoint, a
+/// checkpoint at a whole cycle is used only if this cycle is a multiple of Ask::checkpoint_every.
 MeasureOutcome measure_runs(const Store& store, std::vector<FrameRun>& runs,
                             std::span<const std::string> providers, const MeasureOptions& options);
 

@@ -153,7 +153,7 @@ std::string verdict_text(const ComputedFigure& figure) {
 /// Sets Verdict::primary from the key `primary` of the experiment's manifest at this scale. A
 /// figure of all experiments uses all manifests. A manifest names a claim by the claim's id, with
 /// or without the value of `for_each`. Older manifests name a claim by its statement. If all runs
-/// are selected, notes the ids with a value that no verdict of the claim has.
+/// are selected, adds a note for each id that names a value for which the claim has no verdict.
 void mark_primary(const std::vector<RegisteredManifest>& manifests, const RunSelection& selected,
                   ComputedFigure& figure) {
   for (const RegisteredManifest& manifest : manifests) {
@@ -161,7 +161,7 @@ void mark_primary(const std::vector<RegisteredManifest>& manifests, const RunSel
     for (const Scale& scale : scales_of(manifest.content)) {
       if (scale.name != figure.scale && !scale.name.empty()) continue;
       for (const PrimaryClaim& primary : scale.primary) {
-        bool named = false, same_claim = false;  // same_claim: another value after @
+        bool named = false, same_claim = false;  // same_claim: ids are equal up to @
         for (Verdict& verdict : figure.verdicts) {
           const std::string claim = verdict.id.substr(0, verdict.id.find('@'));
           const bool is_it =

@@ -53,7 +53,8 @@ MeasureOutcome keep_measures(const Store& store, std::vector<CheckpointRecord>& 
       }
       for (const auto& [figure, experiment, also, manifests, plots] : simulating) {
         if (experiment != place.experiment) continue;
-        // Simulations are slow, so only the cycles that figures show are simulated.
+        // Measures that need a simulation are slow to compute. They are therefore computed only at
+        // the cycles that figures show.
         MeasureOptions some = options;
         some.simulated = figure.simulated ? figure.simulated : figure.within;
         std::vector<std::string> names = figure.needs;
@@ -68,8 +69,9 @@ MeasureOutcome keep_measures(const Store& store, std::vector<CheckpointRecord>& 
     for (const FrameRun& run : runs) {
       for (const CheckpointMeasures& one : run.checkpoints) {
         for (const std::string& name : one.lacking) {
-          // If the provider needs the file of an earlier checkpoint that is already pruned (a
-          // pruned run was continued), the measure was lost with the earlier file.
+          // The provider may need the file of an earlier checkpoint. If that file is already
+          // pruned, as in a continued run, the measure is lost, and the later file need not be
+          // kept.
           const auto* earlier = sources.earlier(one, provider(name), run.ask.checkpoint_every);
           const bool lost = earlier != nullptr && earlier->state == CheckpointState::pruned;
           if (!lost) unmeasured.insert(one.sha256);

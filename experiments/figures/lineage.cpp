@@ -87,7 +87,8 @@ FigureInput read_input(const json& entry, const RunLineage& run) {
 // The swept values of the run, from the version of the manifest that the figure used.
 json swept_values_of(const Stage& stage, const FigureInput& input) {
   for (const auto& [place, ask, newest] : stage.memberships) {
-    // Earlier programs named a variant of an older manifest "VARIANT,manifest=VERSION".
+    // Earlier versions of this program named a variant of an older manifest
+    // "VARIANT,manifest=VERSION".
     const bool same =
         input.variant == place.variant || input.variant.starts_with(place.variant + ",manifest=");
     if (place.manifest == input.manifest && same) return place.swept;
@@ -295,7 +296,9 @@ std::optional<PublishedFile> find_published(const Store& store, const std::files
   const auto content =
       read_plain(std::filesystem::weakly_canonical(file), StoreLimits::published_bytes);
   if (!content) {
-    throw NotFound(file.string() + ": no readable file, or larger than any file of a figure");
+    throw NotFound(
+        file.string() +
+        ": this is not a readable file, or the file is larger than any file of a figure");
   }
   const std::string sha256 = sha256_hex(*content);
   const std::string name = file.filename().string();

@@ -68,7 +68,8 @@ nlohmann::json overrides_of(const Store& store, const Stage& stage, const Place&
 std::string figure_name(const FigureRecord& record);
 
 /// The path of the figure: "drag/desk/S2" for example, or "desk/table1" for a figure of all
-/// experiments. If an older version recorded "drag/S2", the path is "drag/desk/S2", too.
+/// experiments. The path is "drag/desk/S2" even if an older version of this program named the
+/// record "drag/S2".
 std::string figure_path(const FigureRecord& record);
 
 /// The text of a figure's lineage file, which is the payload of the figure's record without host

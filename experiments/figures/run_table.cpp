@@ -28,7 +28,8 @@ using nlohmann::ordered_json;
 struct Row {
   const FrameRun* run = nullptr;
   const CheckpointMeasures* checkpoint = nullptr;  // null for a run that was not started
-  const FrameRun* history = nullptr;  // the run with only its whole cycles, for onsets; or null
+  const FrameRun* history = nullptr;  // the run with only its checkpoints at whole cycles, from
+                                      // which onsets are found; null if the row has no onsets
 };
 
 struct Column : TableColumn {
@@ -65,8 +66,10 @@ Column column_of(const Measure& measure) {
 }
 
 std::vector<Column> which_checkpoint() {
-  return {of_checkpoint("cycle", "cycles since the shear began; for a stiffening, its steps",
-                        [](const CheckpointRecord& c) { return c.cycle; }),
+  return {of_checkpoint(
+              "cycle",
+              "cycles since the shear began; in a stiffening, number of completed minimizations",
+              [](const CheckpointRecord& c) { return c.cycle; }),
           of_checkpoint("checkpoint", "SHA-256 of the checkpoint's file",
                         [](const CheckpointRecord& c) { return c.sha256; })};
 }
@@ -202,7 +205,7 @@ RunTable run_table(const Store& store, const RunSelection& selection, RowPer per
     }
   }
   made += measure_checkpoints(store, in_rows, names, options);
-  const std::string scalars = scalars_provider;  // onsets need no other measures
+  const std::string scalars = scalars_provider;  // onsets need only the measures of this provider
   made += measure_checkpoints(store, others, {&scalars, 1}, options);
   note_lacking(runs, made);
   const std::vector<Column> columns = columns_for(runs, per, simulated);

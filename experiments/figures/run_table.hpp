@@ -41,7 +41,7 @@ RunTable curve_table(const Store& store, const RunSelection& selection, const Me
 std::vector<std::string> table_providers();
 std::vector<std::string> simulating_providers();
 
-/// All columns except those of swept parameters. Includes measures that a simulation computes.
+/// All columns except those of swept parameters. Includes the measures of simulating_providers().
 std::vector<TableColumn> table_columns();
 
 std::vector<std::pair<TableColumn, TableCell>> facts_of(const CheckpointRecord& record,

@@ -91,13 +91,13 @@ void note_shortened(const std::vector<Run>& runs, std::vector<std::string>& note
   }
 }
 
-/// Replaces each experiment whose manifest has the key `of` by the experiments listed in `of` that
-/// have runs of their own.
+/// Replaces each experiment whose manifest has the key `of` by the experiments listed in this key.
+/// Listed experiments without runs of their own are left out.
 std::vector<std::string> with_members(const Store& store,
                                       const std::vector<std::string>& experiments) {
   std::vector<std::string> all;
   if (experiments.empty()) return all;
-  std::map<std::string, std::vector<std::string>> members;  // by registered experiment: key `of`
+  std::map<std::string, std::vector<std::string>> members;  // experiment -> its manifest's `of`
   for (const RegisteredManifest& one : newest_manifests(store)) {
     members[one.experiment] = one.content.of;
   }

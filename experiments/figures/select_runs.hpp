@@ -41,7 +41,7 @@ struct NewestRuns {
 /// to several variants is listed for each variant. Settled packings are left out.
 NewestRuns newest_runs(std::vector<Run> selected);
 
-/// Experiment, scale, variant and seed from the first recorded membership of the stage. Empty if no
+/// The experiment, scale, variant and seed for which the stage was declared first. Empty if no
 /// experiment declared the stage, as in a damaged store.
 Place first_place(const Stage& stage);
 

@@ -55,8 +55,9 @@ struct ChosenRun : Run {
   std::size_t wall_grains = 0;
 };
 
-/// Returns the runs of PackingChoice::runs. If these are empty, returns for each experiment the
-/// last run of each variant. If an experiment has too many variants, they are chosen evenly spaced.
+/// Returns the runs of PackingChoice::runs. If this list is empty, returns for each experiment the
+/// last run of each variant, but at most PackingChoice::runs_per_experiment runs: those of evenly
+/// spaced variants.
 std::vector<ChosenRun> choose(const Store& store, const std::vector<std::string>& experiments,
                               const RunSelection& selection, const PackingChoice& choice) {
   std::vector<ChosenRun> chosen;
@@ -90,8 +91,8 @@ bool has_more_digits(const Measure& measure) {
          measure.name == "crystallite";
 }
 
-/// Sets the number of wall grains and the bytes per packing of each run, from its newest readable
-/// checkpoint. Removes runs without a readable checkpoint.
+/// For each run, sets the number of wall grains and the size of one checkpoint in the page, both
+/// from the run's newest readable checkpoint. Removes runs without a readable checkpoint.
 void weigh(const Store& store, std::vector<ChosenRun>& runs, Packings& packings) {
   const auto all = all_measures(MeasureKind::grains);
   const auto fields = static_cast<std::size_t>(

@@ -149,7 +149,7 @@ json panel_json(const Table& table, const std::string& id, const ComputedFigure&
           {"csv", to_csv(table)}};
 }
 
-/// The newest record of a figure with the same lineage: manifests, runs, states, analysis version.
+/// The newest record with the lineage of `figure`: name, manifests, runs, states, analysis version.
 std::optional<FigureRecord> recorded_as(const Store& store, const ComputedFigure& figure) {
   std::optional<FigureRecord> newest;
   for (FigureRecord& record : figure_records(store)) {

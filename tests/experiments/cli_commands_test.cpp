@@ -174,8 +174,8 @@ TEST_F(Commands, AnExperimentHasOneManifestAtATime) {
   write("other.yaml", tiny_manifest("  pressure_Pa: 700\n"));
   write("comment.yaml", "# a comment\n" + tiny_manifest("  pressure_Pa: 700\n"));
   const std::string warning =
-      "newest manifest of experiment tiny differs from this file and has 1 run that this plan "
-      "lacks";
+      "newest manifest of experiment tiny differs from this file and has 1 run that the plan of "
+      "this file lacks";
   for (const char* store : {"shearcell-store", "none"}) {
     expect(0, {"plan", "m.yaml", "other.yaml", "--store", store}, {"other.yaml: the " + warning});
     EXPECT_FALSE(has(run({"plan", "m.yaml", "same.yaml", "--store", store}).err, warning));
