@@ -113,14 +113,13 @@ std::vector<GrainPlace> places_of(const Checkpoint& checkpoint,
   return places;
 }
 
-/// Computes result_of(checkpoint, grains, motion since the earlier checkpoint). The result is empty
-/// if there is no earlier checkpoint.
+/// Computes result_of(input, motion since the earlier checkpoint). The result is empty if there is
+/// no earlier checkpoint.
 auto from_motion(auto result_of) {
   return [result_of](const MeasureInput& input) -> json {
     const Checkpoint* earlier = input.earlier ? input.earlier() : nullptr;
     if (earlier == nullptr) return json::object();
-    const Motion moved = motion(*earlier, *input.checkpoint);
-    return result_of(*input.checkpoint, input.analysis->grains, moved);
+    return result_of(input, motion(*earlier, *input.checkpoint));
   };
 }
 
@@ -132,8 +131,9 @@ json means_of(const Motion& moved, const GrainMeasures& grains, const std::strin
           {"d2min_" + lag, mean_over(grains.interior, nonaffine)}};
 }
 
-json one_cycle(const Checkpoint& checkpoint, const GrainMeasures& grains, const Motion& moved) {
-  const std::vector<GrainPlace> places = places_of(checkpoint, grains.structure);
+json one_cycle(const MeasureInput& input, const Motion& moved) {
+  const GrainMeasures& grains = input.analysis->grains;
+  const std::vector<GrainPlace> places = places_of(*input.checkpoint, grains.structure);
   const auto square_in = [&](GrainPlace place) {
     return mean_over(grains.interior, [&](std::size_t i) {
       return places[i] == place ? moved.square(i) : std::nan("");
@@ -149,7 +149,7 @@ json one_cycle(const Checkpoint& checkpoint, const GrainMeasures& grains, const 
   return values;
 }
 
-json of_each_grain(const Checkpoint&, const GrainMeasures&, const Motion& moved) {
+json of_each_grain(const MeasureInput&, const Motion& moved) {
   const Eigen::VectorXd displacement = moved.displacement.colwise().norm();
   return {{"displacement_d", std::vector(displacement.begin(), displacement.end())},
           {"d2min_d2", moved.nonaffine}};
@@ -158,8 +158,8 @@ json of_each_grain(const Checkpoint&, const GrainMeasures&, const Motion& moved)
 /// Each lag has its own provider, so a pruned checkpoint affects only the lag that needs it.
 Provider motion_over(std::uint64_t cycles) {
   const std::string lag = fmt::format("{}_cycles_d2", cycles);
-  const auto means = [lag](const Checkpoint&, const GrainMeasures& grains, const Motion& moved) {
-    return means_of(moved, grains, lag);
+  const auto means = [lag](const MeasureInput& input, const Motion& moved) {
+    return means_of(moved, input.analysis->grains, lag);
   };
   return {
       .name = fmt::format("motion_{}", cycles),
