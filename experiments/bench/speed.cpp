@@ -22,10 +22,12 @@ struct KernelTimes {
   const Kernels* inner = nullptr;
   std::size_t calls = 0;
   double step = 0, search = 0, prune = 0;
-  // Every 16th step is repeated three times: the whole step, the step without walls, and the step
-  // without walls and neighbours. The results of the repeated steps are written to `elsewhere`.
+  // Every 16th step is sampled, that is, repeated three times: the whole step, the step without
+  // walls, and the step without walls and neighbours. The results of the repetitions are written to
+  // `elsewhere`. `sampled`: total time for sampling.
   double sampled = 0, whole = 0, without_walls = 0, without_neighbours = 0;
-  double blocks = 0, slots = 0;  // blocks of grains and neighbour slots, counted in repeated steps
+  // Numbers of blocks and of their neighbour slots in all sampled steps. Each step counts once.
+  double blocks = 0, slots = 0;
   std::vector<double> elsewhere;
 };
 KernelTimes times;

@@ -74,7 +74,7 @@ exit "$code"
 
 /// Adds the command to the job. The user's options come directly after --export and before all
 /// other options, so they can replace only --export: sbatch uses the last of repeated options.
-/// Environment variables replace no option, because sbatch prefers options to them.
+/// Environment variables cannot replace an option: for sbatch, options take precedence.
 Job complete(Job job, const JobOptions& options, const fs::path& folder, const std::string& log,
              const std::vector<std::string>& own, const std::vector<std::string>& arguments) {
   std::vector<std::string>& words = job.command;

@@ -34,9 +34,10 @@ struct Share {
 /// several plans contain is listed once. `store` may be null.
 std::vector<Share> shares_of(const std::vector<Plan>& plans, const Store* store);
 
-/// Distributes packings over at most `tasks` shares, none of them empty. `packings`: one share for
-/// each packing. They are taken in order of descending core time, and each is added to the share
-/// that has the least core time so far. The same input gives the same shares.
+/// Distributes packings over at most `tasks` shares, none of them empty. `packings`: shares with
+/// one packing each, from shares_of(). In order of descending core time, each packing and its runs
+/// are added to the result's share that has the least core time so far. The same input gives the
+/// same shares.
 std::vector<Share> share_out(std::vector<Share> packings, std::size_t tasks);
 
 /// Options for Slurm. Empty texts leave the choice to the cluster.
@@ -61,8 +62,9 @@ struct Proposal {
 };
 
 /// Divides the packings of the plans, each with all its runs, into shares. A packing is left out if
-/// `busy` contains it or one of its runs. If `job.cpus` is 0, each task gets enough cores to
-/// compute all runs of any share in parallel, but at most 16 (or `job.threads` if larger).
+/// `busy` contains it or one of its runs. Each share is one task. If `job.cpus` is 0, each task
+/// gets `job.threads` cores for each run of the share with the most runs, but at most 16 cores (or
+/// `job.threads` cores, if that is more).
 Proposal propose(const std::vector<Plan>& plans, const Store* store,
                  const std::set<std::string>& busy, std::size_t most_tasks, JobOptions job);
 
@@ -93,9 +95,10 @@ Job array_job(const Submission& submission, const std::filesystem::path& store,
 Job merge_job(const Submission& submission, const std::filesystem::path& store,
               const JobOptions& options, const std::string& array);
 
-/// Makes a store for each task, with copies of all records of its runs. Then records an event that
-/// contains `facts`, the runs of each task and the command. `seen`: number of submission events the
-/// caller has read. Throws ConcurrencyConflict if another program has added such an event since.
+/// Makes a store for each task, with copies of all records of its runs. Then records an event with
+/// the runs of each task, the command, and the entries of `facts`. `seen`: number of submission
+/// events that the caller has read. Throws ConcurrencyConflict if another program has added a
+/// submission event since.
 Submission prepare_submission(Store& store, const Proposal& proposal, nlohmann::json facts,
                               std::size_t seen);
 
@@ -113,8 +116,9 @@ std::uint64_t merge_tasks(Store& store, const Submission& submission);
 /// that a process is computing, and the packings of these runs that are not yet settled.
 std::set<std::string> busy_runs(const Store& store, const std::vector<Submission>& open);
 
-/// Writes `FOLDER.progress.json` for the task's store FOLDER, in one atomic step. Other machines
-/// read this file while the task runs, because SQLite's locks may not work between machines.
+/// Writes `FOLDER.progress.json` for the task's store FOLDER, in one atomic step. While the
+/// task runs, other machines read this file instead of the task's store, because SQLite's locks may
+/// not work between machines.
 void write_task_report(const std::filesystem::path& folder, const std::vector<Stage>& runs);
 
 /// State and cycle of each run, by id, from FOLDER.progress.json; empty if the file is not valid.

@@ -36,7 +36,8 @@ struct ExportedState : Particles {
   /// The frame's scalar measures, by their names in `shearcell table`; NaN if unknown.
   std::vector<std::pair<std::string, double>> scalars;
 
-  /// Measures of each particle (analysis/measures.hpp). An unknown value is NaN, or -1 if `whole`.
+  /// Measures of each particle (analysis/measures.hpp). An unknown value is NaN, but in a column of
+  /// whole numbers it is -1.
   std::vector<ExportedColumn> columns;
   double stiffness_N_per_m = std::nan("");  ///< of a contact; NaN if unknown
   MeasureOutcome unread;                    ///< earlier checkpoints that could not be read

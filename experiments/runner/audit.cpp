@@ -62,10 +62,10 @@ void check_stage(const Stage& stage) {
   for (const Membership& m : stage.memberships) check_place(m.place, inputs, stage.resolved);
 }
 
-/// Steps of the parent at which the stage may have started. If the parent is a packing, each
-/// completed attempt gives two steps, which can differ after a merge: the step of the attempt's
-/// last checkpoint, and the largest step that the packing had reached by then. If the parent is not
-/// a packing, the only step is that of starting_state().
+/// Steps of the parent at which the stage may have started. If the parent is a packing, each of the
+/// packing's completed attempts gives two steps: the step of the attempt's last checkpoint, and the
+/// largest step of the checkpoints from this attempt and earlier attempts. The two steps can differ
+/// after a merge. If the parent is not a packing, the only step is that of starting_state().
 std::set<std::uint64_t> starting_steps(const Store& store, const Stage& stage) {
   std::set<std::uint64_t> steps;
   if (store.stage(stage.parent).kind != name_of(StageKind::prepare)) {
@@ -87,9 +87,9 @@ std::set<std::uint64_t> starting_steps(const Store& store, const Stage& stage) {
   return steps;
 }
 
-/// Throws StoreDamaged if the stage started from a wrong checkpoint of its parent. If the log has a
-/// merge, accepts a checkpoint that is not in the log: merge() does not copy a checkpoint if the
-/// store already has the same state in a file with other bytes.
+/// Throws StoreDamaged if the stage started from a wrong checkpoint of its parent. If stores were
+/// merged into this store, a start from a checkpoint that is not in the log is accepted, because
+/// merge() does not copy a checkpoint if the store has the same state in a file with other bytes.
 void check_beginning(const Store& store, const Stage& stage) {
   if (stage.parent.empty()) return;
   const std::set<std::uint64_t> steps = starting_steps(store, stage);
@@ -243,7 +243,8 @@ std::vector<CheckpointRecord> replayable(const Store& store) {
 std::vector<CheckpointRecord> sample(std::vector<CheckpointRecord> records, std::size_t count,
                                      std::uint64_t seed) {
   count = std::min(count, records.size());
-  // The distributions of <random> differ between standard libraries, so this uses remainders.
+  // The distributions of <random> give different numbers in different standard libraries, so the
+  // indices are remainders of the generator's numbers.
   std::mt19937_64 random(seed);
   for (std::size_t i = 0; i < count; ++i) {
     std::swap(records[i], records[i + random() % (records.size() - i)]);
@@ -311,7 +312,8 @@ std::vector<MergeReport> merge_stores(Store& store,
                                       std::vector<Finding>* refused) {
   constexpr std::size_t kSampled = 3;
   std::vector<MergeReport> reports = store.merge(sources, runs);
-  // The sample depends on the store's head, so the author of a forged source cannot predict it.
+  // The seed comes from the head of `store`, so someone who forges a source cannot predict which
+  // checkpoints are checked.
   const std::uint64_t seed = seed_of(store.head());
   for (const std::filesystem::path& source : sources) {
     MeasureCheck check = check_measures(store, source, kSampled, seed);

@@ -38,8 +38,8 @@ enum class JobState { waiting, running, done, ended };
 
 // Time between two checks of a stage that another process computes.
 constexpr std::chrono::milliseconds kCheckInterval{500};
-// If more attempts than this ended with StageOutcome::lost, but no process is computing the stage,
-// the stage is blocked.
+// A stage is blocked if more than this number of its attempts ended with StageOutcome::lost and no
+// other process is computing it.
 constexpr int kMostLosses = 20;
 
 // --- Progress on standard error ---
@@ -152,7 +152,7 @@ class Campaign {
  private:
   struct Job : StageJob {
     JobState state = JobState::waiting;
-    // Set if another process was computing the stage at the last attempt: when to try again.
+    // When to try again. Empty until an attempt finds that another process computes the stage.
     std::optional<Clock::time_point> check_at = {};
     int losses = 0;  // number of attempts that ended with StageOutcome::lost
   };
@@ -175,7 +175,8 @@ class Campaign {
     return held_job;
   }
 
-  // Whether a job that will not be started is already done. Computes no measures (too slow).
+  // For a job that this campaign does not start: whether the stage is done (Outlook::done).
+  // Computes no measures, because that would take too long.
   bool was_done(const StageJob& job) const {
     try {
       return look_at(store_, store_.stage(job.id)).done;

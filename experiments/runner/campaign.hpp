@@ -31,7 +31,8 @@ struct CampaignResult {
   std::size_t damaged = 0;        ///< stages with a damaged file in the store
   std::size_t files_deleted = 0;  ///< checkpoint files deleted because of --keep-every
   bool left_failed = false;       ///< failed stages were left out because of --leave-failed
-  /// On failures, damage, and states with another bits_version.
+  /// Messages about failed and blocked stages, damaged files, and starting states that this program
+  /// cannot recompute bit for bit.
   std::vector<std::string> messages = {};
 
   bool operator==(const CampaignResult&) const = default;

@@ -89,8 +89,9 @@ class Measuring {
   }
 
  private:
-  /// A checkpoint to measure. Entries of checkpoints_ with equal checkpoint and `every` share a
-  /// task. `keys` and `results` have one element per provider. A result is null until it is known.
+  /// A checkpoint to measure. Entries of checkpoints_ that have the same checkpoint and the same
+  /// value of `every` share one task. `keys` and `results` have one element per provider. A result
+  /// is null until it is known.
   struct Task : ToMeasure {
     std::span<const DerivedKey> keys = {};  // in keys_
     std::vector<json> results = {};
@@ -146,8 +147,9 @@ class Measuring {
       }
       const CheckpointRecord* other = sources_.earlier(record, *providers_[p], task.every);
       if (other != nullptr) outcome_.earlier.insert(other->sha256);
-      // If the log has digests for this checkpoint, but none for this result, the cached result is
-      // used only if the checkpoint is not pruned.
+      // The log may have digests of other results of this checkpoint, but none of this result. The
+      // cached result is then used only if the checkpoint is not pruned: without the checkpoint's
+      // file, nothing can confirm the result.
       if (!found[p] ||
           !sources_.is_as_pruned(record, {task.keys[p], *found[p]}).value_or(!is_pruned)) {
         continue;

@@ -70,7 +70,7 @@ MeasureOutcome measure_checkpoints(const Store& store, std::span<const ToMeasure
 Analysis analyse_stored(const CheckpointRecord& record, const Checkpoint& checkpoint);
 
 /// Calls work(0) .. work(count - 1), at most `workers` at once. Collects the messages of
-/// StoreDamaged and FilePruned. The first other exception ends the work and is rethrown.
+/// StoreDamaged and FilePruned. Any other exception ends the work and is rethrown.
 MeasureOutcome read_in_parallel(std::size_t count, std::size_t workers,
                                 const std::function<void(std::size_t)>& work,
                                 const ReadProgress& progress);
@@ -104,8 +104,10 @@ class MeasureSources {
                                    const DerivedObject& object) const;
 
   struct PrunedMeasures {
-    std::size_t named = 0, absent = 0;  ///< digests in the log; digests of uncached measures
-    std::string altered;  ///< message about a measure that differs from the log, or ""
+    /// `named`: number of measures with a digest in the log. `absent`: how many of them are not
+    /// cached.
+    std::size_t named = 0, absent = 0;
+    std::string altered;  ///< about a cached measure whose digest differs from the log, or ""
   };
   /// Compares the cached measures of a pruned checkpoint with the digests in the log.
   PrunedMeasures compare_pruned(const CheckpointRecord& record, DerivedCache& cache) const;

@@ -100,8 +100,8 @@ End end_by(const Stage& stage, const Ask& ask, std::span<const CheckpointRecord>
   return end;
 }
 
-/// Whether the stage is completed, and is long enough for `ask` because it fulfils a recorded
-/// request that has the same `until` and cannot end earlier than `ask`.
+/// Whether the stage is completed and a recorded request covers `ask`: the recorded request has the
+/// same `until`, and cannot end the stage earlier than `ask` would.
 bool is_covered(const Stage& stage, const Ask& ask) {
   return stage.state == StageState::completed && !ask.until.is_null() &&
          std::ranges::any_of(asks_of(stage.memberships), [&](const Ask& recorded) {
@@ -151,9 +151,9 @@ double settling_time_s(const Parameters& p) {
   return std::min(std::max({time, damping_time_s(p), pressing_time_s(p)}), p.settle_time_limit_s);
 }
 
-/// Estimated number of force evaluations of one minimization at the default tolerance. Differs by
-/// less than a sixth from the measured means of nine minimizations in a stiffening (supplement
-/// B.2): 8.2e3, 16e3 and 52e3 at N = 600, 2000 and 7900.
+/// Estimated number of force evaluations of one minimization at the default tolerance. The measured
+/// means over the nine minimizations of a stiffening (supplement B.2) are 8.2e3, 16e3 and 52e3 at
+/// N = 600, 2000 and 7900. The estimate differs from them by less than a sixth.
 double minimization_evaluations(double grains) {
   return 18e3 * std::pow(grains / 2000, 0.7);
 }

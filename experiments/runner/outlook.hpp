@@ -56,10 +56,10 @@ struct Outlook {
 
 /// Finds what remains to be computed of a recorded or a new stage. `asks`: the requests of
 /// experiments, which may differ from the recorded requests in `stage`. `checkpoints`: all
-/// checkpoints of the stage except rejected ones, by step (Listed::and_pruned). A completed stage
-/// needs no more cycles for a request with an `until` if a recorded request has the same `until`,
-/// at least as many cycles, and a `checkpoint_every` that is a multiple of the requested
-/// `checkpoint_every`. Throws StoreDamaged if a request is invalid.
+/// checkpoints of the stage except rejected ones, by step (Listed::and_pruned). Let A be a request
+/// with an `until`. A completed stage needs no more cycles for A if a recorded request has the same
+/// `until` as A, at least as many cycles, and a `checkpoint_every` that is a multiple of A's.
+/// Throws StoreDamaged if a request is invalid.
 Outlook outlook(const Stage& stage, std::span<const Ask> asks,
                 std::span<const CheckpointRecord> checkpoints, const KnownMeasures& measures = {});
 
@@ -67,8 +67,8 @@ Outlook outlook(const Stage& stage, std::span<const Ask> asks,
 /// unreadable record, which `verify` reports.
 std::optional<Drive> shear_drive(const Stage& stage);
 
-/// Returns, for each request of at least one cycle, when a shear must record checkpoints. Throws
-/// StoreDamaged if a request is invalid.
+/// Returns when a shear must record checkpoints: one entry for each request, except requests for 0
+/// cycles. Throws StoreDamaged if a request is invalid.
 std::vector<CheckpointCadence> cadences_of(const Stage& stage, std::span<const Ask> asks,
                                            const Drive& drive);
 
@@ -130,8 +130,8 @@ std::vector<CheckpointRecord> checkpoints_for(const Store& store, const Stage& s
                                               const MeasureOptions& options = {});
 
 /// The recorded Outlook::ended if an `until` completed the stage before `target_cycles`; otherwise
-/// null. If another experiment made the stage continue beyond this `until`, "cycles_asked" is
-/// added: the number of cycles that the other experiment asked for.
+/// null. If another experiment made the stage continue after this `until` was fulfilled, the result
+/// also has "cycles_asked", the number of cycles that the other experiment asked for.
 nlohmann::json end_of(const Stage& stage);
 
 /// end_of() as text: "crystalline_percent >= 10 at cycle 25 and 15 more cycles"; "" for null.

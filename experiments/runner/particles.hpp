@@ -16,7 +16,8 @@ namespace shearcell {
 /// The first particles are the grains, by id; the wall grains follow, as ordered in Cell. Arrays
 /// have one entry or one column per particle. The caller of particles_of() chooses the units.
 struct Particles {
-  /// Lower left corner of the cell, and its edges as columns. Only the third edge is periodic.
+  /// `origin`: lower left corner of the cell. `edges`: the three edge vectors of the cell, as
+  /// columns. The cell is periodic only along the third edge.
   Eigen::Vector3d origin;
   Eigen::Matrix3d edges;
 

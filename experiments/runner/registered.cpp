@@ -14,8 +14,8 @@ namespace {
 // experiment thus form one group, in which different packings get different names.
 const std::string kPackings = "packings";
 
-/// All registered manifests, oldest first. A manifest appears twice if it was registered again
-/// after another version. Throws StoreDamaged for an event that does not hold a manifest.
+/// All registered manifests, oldest first. If an experiment returned to an earlier manifest, this
+/// manifest appears twice. Throws StoreDamaged for an event that does not hold a manifest.
 std::vector<RegisteredManifest> registered_manifests(const Store& store) {
   std::vector<RegisteredManifest> found;
   std::vector<Event> events = store.events("", "ManifestRegistered");

@@ -281,7 +281,7 @@ class OwnEngine final : public Engine {
 /// Advances to `step`, or to the end of the stage if the end comes first. Calls the function
 /// `between` with the progress about every 50 ms.
 StageProgress advance_to(OwnEngine& engine, std::uint64_t step, const auto& between) {
-  StageProgress progress;  // cycle 0 if the engine is already at `step`
+  StageProgress progress;  // stays at cycle 0 if `step` is 0
   while (engine.step() < step && !progress.finished) {
     progress = engine.advance_by(step - engine.step());
     if (engine.step() < step) between(progress);
@@ -417,7 +417,8 @@ class StageAttempt {
     const nlohmann::json& ends = plan_.stage.ends;
     nlohmann::json ended = ends.empty() ? nlohmann::json() : ends.back();
     if (ended.is_null()) ended = {{"by", "cycles"}};
-    // The recorded end applies to all experiments, also to those declared after the stage ended.
+    // The end is recorded again, with the number of experiments that use the stage now. Some may
+    // have been declared after the stage ended.
     if (ended.contains("memberships")) ended["memberships"] = plan_.stage.memberships.size();
     return attempt(beginning, host_facts(), true, [&] {
       OwnEngine engine(plan_, std::move(beginning), options_.parallel.threads);
@@ -485,7 +486,8 @@ class StageAttempt {
     try {
       store_.interrupt_stage(id(), failure.what());
     } catch (const std::exception&) {
-      // The end was not recorded. Another process can continue after the run's lease has expired.
+      // The end was not recorded. Another process can continue the run when this process's lease
+      // has expired.
     }
   }
 
@@ -574,7 +576,7 @@ class StageAttempt {
   Stopwatch started_, recorded_, reported_;
 };
 
-// Whether the newest checkpoint can be read or was pruned. run_stage() reports damage.
+// True if the newest checkpoint can be read or was pruned; false if it is damaged or missing.
 bool newest_is_sound(const Store& store, const Stage& stage) {
   const auto found = store.checkpoints(stage.id, Listed::and_pruned);
   return !found.empty() &&
@@ -786,8 +788,8 @@ std::optional<std::string> why_not_again(const Store& store, const CheckpointRec
   const Attempt& by = run.attempts[*made->attempt];
   if (by.bits_version == bits_version) return std::nullopt;
   return fmt::format(
-      "shearcell {} computed this state with bits version {}, but this program has bits version "
-      "{}; the results of the two versions differ in the last bits",
+      "shearcell {} computed this state with bits_version {}, but this program has bits_version "
+      "{}, so its results differ in the last bits",
       maker_of(by.host).version, by.bits_version, bits_version);
 }
 

@@ -42,17 +42,17 @@ struct StageOptions {
 /// the newest valid checkpoint. Without one, starts from a state of the parent, or fills a new
 /// cell. If the starting state was pruned, its file is restored first. About every 50 ms,
 /// checks stop_requested() and whether this program still holds the stage. If a stop is requested
-/// while the cell is filled, nothing is recorded. Throws before anything is recorded: StoreDamaged
-/// if the starting state is damaged, or the recorded parameters do not give the id; NotFound if
-/// there is no starting_state(); FilePruned if it was pruned and cannot be recomputed;
-/// GeometryError if the cell cannot be filled; TooLittleMemory; ProgramError if the stage's engine
-/// is not installed.
+/// while the cell is filled, nothing is recorded. These errors are thrown before anything is
+/// recorded: StoreDamaged if the starting state is damaged, or if the id is not the hash of the
+/// recorded parameters; NotFound if the stage needs a starting_state(), but there is none;
+/// FilePruned if the starting state was pruned and cannot be recomputed; GeometryError if the cell
+/// cannot be filled; TooLittleMemory; ProgramError if the stage's engine is not installed.
 StageOutcome run_stage(Store& store, const std::string& id, const StageOptions& options);
 
-/// Whether the stage is done (Outlook::done) and its last checkpoint can be read or was pruned.
+/// True if the stage is done (Outlook::done) and its last checkpoint can be read or was pruned.
 bool is_done(const Store& store, const Stage& stage);
 
-/// The checkpoint of the parent from which the stage starts, even if its file is pruned. If the
+/// The parent's checkpoint that the stage starts from, even if this checkpoint was pruned. If the
 /// parent is a packing: its last checkpoint. If the parent is a shear: its checkpoint at cycle
 /// `start_cycle`. Empty if this checkpoint was never recorded, or if the packing has not settled.
 std::optional<CheckpointRecord> starting_state(const Store& store, const Stage& stage,
@@ -87,9 +87,9 @@ std::optional<std::string> why_not_again(const Store& store, const CheckpointRec
                                          RunLineages& known);
 
 /// Recomputes a checkpoint from the nearest earlier checkpoint whose file exists, or from the
-/// beginning of the stage. Compares the state and the numbers that are recorded with it (cycle,
-/// time, tilt, observables), and records ReplayVerified or ReplayDiverged. Throws FilePruned if the
-/// replay would have to start from a state of the parent that was pruned.
+/// beginning of the stage. Compares the recomputed state, cycle, time, tilt and observables with
+/// the recorded ones, and records ReplayVerified or ReplayDiverged. Throws FilePruned if the replay
+/// would have to start from a pruned state of the parent.
 Replay verify_by_replay(Store& store, const CheckpointRecord& record, std::size_t threads = 1);
 
 /// Recomputes a checkpoint like verify_by_replay(), and writes its pruned, missing or damaged file

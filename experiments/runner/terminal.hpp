@@ -55,8 +55,9 @@ void print_stderr(fmt::format_string<Arguments...> format, Arguments&&... argume
   write_stderr(for_terminal(fmt::format(format, std::forward<Arguments>(arguments)...)));
 }
 
-/// Returns a function that shows "WHAT done of total" on standard error. A terminal shows one line,
-/// which is overwritten; otherwise a line is added at most every ten seconds. Not thread-safe.
+/// Returns a function that shows "WHAT done of total" on standard error. The line is
+/// overwritten if moves_cursor(stderr) is true. Otherwise, a line is added at most every ten
+/// seconds. Not thread-safe.
 std::function<void(std::size_t, std::size_t)> terminal_counter(std::string what);
 
 }  // namespace shearcell

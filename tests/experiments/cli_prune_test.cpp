@@ -580,8 +580,8 @@ TEST_F(OtherBits, AreNotRegeneratedAndNotCalledDiverged) {
   const std::size_t events = store.head().seq;
   const Outcome refused =
       expect(1, {"regenerate", record.sha256},
-             {"shearcell 0.1.0 (41b6139096fb) computed this state with bits version 1",
-              "this program has bits version 2"});
+             {"shearcell 0.1.0 (41b6139096fb) computed this state with bits_version 1",
+              "this program has bits_version 2"});
   EXPECT_FALSE(has(refused.out, "DIVERGED"));
   EXPECT_EQ(store.head().seq, events);
 }
@@ -594,7 +594,7 @@ TEST_F(OtherBits, AreNamedByWhatContinuesThem) {
   EXPECT_EQ(versions(), (std::vector<std::uint64_t>{0, 0, 0})) << "written before they were";
   const std::string run = last_run();
   expect(0, {"run", "m.yaml", "--cycles", "4", "-q"},
-         {"cannot be repeated bit for bit: shearcell 0.1.0", "with bits version 1"});
+         {"cannot be repeated bit for bit: shearcell 0.1.0", "with bits_version 1"});
   EXPECT_EQ(last_run(), run);
   EXPECT_EQ(versions(), (std::vector<std::uint64_t>{0, 0, 0, 2}));
   // Cycles 3 and 4 can be made again from cycle 2, which cannot.
@@ -604,7 +604,7 @@ TEST_F(OtherBits, AreNamedByWhatContinuesThem) {
   EXPECT_EQ(objects(), 6U);
   // Nor does a program say so of its own states.
   const Outcome more = expect(0, {"run", "m.yaml", "--cycles", "5", "-q"});
-  EXPECT_FALSE(has(more.err, "bits version")) << more.err;
+  EXPECT_FALSE(has(more.err, "bits_version")) << more.err;
 }
 
 }  // namespace

@@ -134,7 +134,8 @@ pair_coeff * * ${{law}})",
 
   bool fluid_moves() const { return shears_ && fluid_share(scene_.fluid) != 0; }
 
-  // Defines LAMMPS variables for heights and tilt of the walls. An atom represents the moving wall.
+  // Defines LAMMPS variables for the heights and the tilt of the walls. The height of the moving
+  // wall is the y coordinate of the atom that represents this wall.
   void pose() {
     const auto cycle = cycle_steps(task_.drive);
     const double turn = static_cast<double>(task_.drive.steps_per_cycle);
@@ -157,9 +158,9 @@ pair_coeff * * ${{law}})",
     add(text_, "variable shear_rate equal v_rate/cos(v_theta)^2");
   }
 
-  // Moves the wall grains of a group. `x` and `vx` are LAMMPS variables of the motion along x: the
-  // displacement from the data file, and the velocity. If `rises`, the grains also follow the
-  // moving wall in y.
+  // Moves the wall grains of a group. `x` and `vx` are LAMMPS variables of the motion along x: `x`
+  // is the displacement from the position in the data file, and `vx` is the velocity. If `rises`,
+  // the grains also follow the moving wall in y.
   void carry(const char* group, const char* x, const char* vx, bool rises) {
     add(text_, "fix {0} {0} move variable v_{1} v_{2} v_zero v_{3} v_{4} v_zero", group, x,
         rises ? "rise" : "zero", vx, rises ? "rising" : "zero");
@@ -193,8 +194,9 @@ pair_coeff * * ${{law}})",
   }
 
   // Side planes rotate about their upper ends. LAMMPS moves a region relative to its first pose.
-  // In the engine's script, the bottom and top planes use wall/harmonic: the motion of the wall
-  // depends on their force, and fix wall/region reports its force only for the first step.
+  // In the script for users, all planes use fix wall/gran/region. In the script for the engine, the
+  // bottom and top planes use fix wall/harmonic, because the force on the moving wall's plane must
+  // be known at each step, and fix wall/region reports its force only for the first step.
   void plane(std::size_t side) {
     const auto [point, normal] = wall_planes(cell_, pose_)[side];
     const double x = point[0] * d_, y = point[1] * d_, k = scene_.stiffness * m_;
@@ -301,8 +303,8 @@ fix drag grains addforce v_drag_x v_drag_y v_drag_z)",
     add(text_, "thermo {}\nthermo_style custom step\nthermo_modify flush yes", task_.check_every);
   }
 
-  // A frame must have the velocities of half a step before its positions, so f/m dt/2 is subtracted
-  // from the velocities in LAMMPS.
+  // In a frame, the velocities must belong to half a step before the positions. In LAMMPS, both
+  // belong to the same time, so f/m dt/2 is subtracted from the velocities of LAMMPS.
   void frames() {
     for (const char axis : {'x', 'y', 'z'}) {
       add(text_, "variable half_{0} atom v{0}-{1:.17g}*f{0}/mass", axis, half_step());
@@ -319,9 +321,9 @@ fix drag grains addforce v_drag_x v_drag_y v_drag_z)",
         task_.end);
   }
 
-  // Defines the output of one cycle of a shear or one second of a packing. The definition must come
-  // before the first `run`. Otherwise LAMMPS would need a second setup, and would then compute the
-  // drag from the velocities that begin() has changed.
+  // Defines the output and the number of steps: by default one shear cycle, or one second if the
+  // cell is not sheared. These lines must come before the first `run`. Otherwise LAMMPS would need
+  // a second setup, and would then compute the drag from the velocities that begin() has changed.
   void watching(std::string_view name) {
     const auto steps = shears_ ? cycle_steps(task_.drive)
                                : static_cast<std::uint64_t>(std::nearbyint(1 / scene_.time_step));

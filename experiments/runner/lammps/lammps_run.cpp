@@ -155,7 +155,9 @@ std::optional<State> LammpsRun::take_frame() {
 std::optional<State> LammpsRun::next_frame(std::chrono::milliseconds patience) {
   const auto until = std::chrono::steady_clock::now() + patience;
   for (;;) {
-    const auto code = process_->exit_code();  // before take_frame(), to get the last frame
+    // The exit code is read before take_frame(), so that a frame that LAMMPS writes just before its
+    // end is not missed.
+    const auto code = process_->exit_code();
     if (auto state = take_frame()) return state;
     if (code) fail(*code);
     if (std::chrono::steady_clock::now() >= until) return std::nullopt;
