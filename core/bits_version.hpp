@@ -8,7 +8,7 @@ namespace shearcell {
 
 /// Programs with the same version compute the same states, bit for bit, from the same initial
 /// state. Raise this number when a change alters any bit, and add a line to tests/core/golden.hpp.
-///   1: version of all programs that do not record this number in events (event layouts 1 and 2)
+///   1: all programs that write layout 1 of the events RunStarted and RunResumed
 ///   2: the force loop also sums the wall forces
 inline constexpr std::uint64_t bits_version = 2;
 

@@ -15,8 +15,8 @@ void CellOrder::choose_strip(std::size_t sites) {
   const double line = static_cast<double>(sites) / (1.0 * cells.rows * cells.layers);
   const double strip = std::min(std::max(kSitesPerRow / line, 3.0), 1.0 * cells.layers);
   cells.strip = static_cast<std::int32_t>(strip);
-  // The prefetch distance is the average number of sites in one row (`strip` lines of cells along
-  // x) and two more lines, plus 20 %, because some rows hold more sites. With fewer than kSmall
+  // A row has `strip` lines of cells along x. The prefetch distance is the average number of sites
+  // in `strip` + 2 lines, times 1.2 to allow for rows with more sites. With fewer than kSmall
   // sites, all sites fit in the cache, so nothing is prefetched.
   constexpr std::size_t kSmall = 4000;
   const double ahead = sites < kSmall ? 0 : 1.2 * line * (cells.strip + 2);

@@ -82,8 +82,9 @@ struct StepTask {
   double margin_loss = 0;   ///< part of each margin lost to shear and rounding [d]
   /// Prefetch distance in rows, see CellOrder::ahead(); 0 disables the prefetch.
   std::size_t ahead = 0;
-  double* next_rows = nullptr;   ///< output: positions at the next step
-  double* velocity[3] = {};      ///< [d/s] in: half a step before `rows`; out: half a step after
+  double* next_rows = nullptr;  ///< output: positions at the next step
+  /// Velocities [d/s], half a step before the time of `rows` (input) or after that time (output).
+  double* velocity[3] = {};
   double velocity_factor = 0;    ///< (1 - b dt / 2m) / D
   double contact_kick = 0;       ///< dt k/m / D [1/s]
   double gravity_step = -0.0;    ///< -dt g / D [d/s], added to v_y; the default -0 changes no bit
@@ -99,14 +100,14 @@ struct CellGrid {
   const std::uint32_t* cell = nullptr;   ///< grid cell of each site
   const double* position[3] = {};        ///< position of each site [d]
   const double* margin = nullptr;        ///< margin of each site [d]
-  const std::int32_t* id = nullptr;      ///< permanent id of each site; wall grains come first
+  const std::int32_t* id = nullptr;      ///< permanent id; wall grains have the smallest ids
 };
 
 /// Input of the search for outer lists. The outer list of a grain holds, in ascending id, all sites
 /// that are closer than 1 plus the margins of the grain and the site [d].
 struct SearchTask {
   CellGrid grid;
-  std::int32_t first_grain = 0;  ///< smallest id of a grain; smaller ids are wall grains
+  std::int32_t first_grain = 0;  ///< smallest id of a grain; smaller ids belong to wall grains
   const std::int32_t* offset_of_id = nullptr;  ///< row offset of each site, by id
   std::int32_t* outer = nullptr;  ///< output: one list per grain, `stride` entries apart
   std::size_t stride = 0;
@@ -137,13 +138,13 @@ struct PruneTask {
   std::uint16_t* other_slots = nullptr;         ///< one entry per block, like the next two arrays
   std::uint16_t* moving_wall_slots = nullptr;
   std::uint8_t* near = nullptr;
-  std::uint8_t* grain_near = nullptr;  ///< as `near`, for each grain and each spare lane
+  std::uint8_t* grain_near = nullptr;  ///< like `near`, but one entry per grain and spare lane
   std::int32_t padding = 0;
   double depth = 0, per_depth = 0;
 };
 
-/// One implementation of the loops. `step` returns a positive number if a grain has moved too far
-/// from its `reference`, by more than its margin minus margin_loss.
+/// One implementation of the loops. `step` returns a positive number if a grain has moved from its
+/// `reference` by more than its margin minus margin_loss.
 struct Kernels {
   const char* name;
   std::size_t lanes;

@@ -75,9 +75,9 @@ double Reference::wall_moved(const WallPose& pose) const {
 }
 
 double Reference::margin_loss(double tan_theta) const {
-  // A simple shear by e multiplies a distance by at least its smallest singular value, which is
-  // sqrt(1 + e^2/4) - e/2 > 1 - e/2. So a distance of 1 plus two margins becomes shorter by at most
-  // the fraction e/2. Half of this loss is subtracted from the margin of each of the two grains.
+  // A simple shear by e multiplies each distance by at least the smallest singular value of the
+  // shear, sqrt(1 + e^2/4) - e/2 > 1 - e/2. So the distance 1 + 2 widest_ decreases by at most the
+  // fraction e/2. Half of this loss is subtracted from the margin of each of the two grains.
   return 0.25 * std::fabs(tan_theta - pose_.tan_theta) * (1 + 2 * widest_) + rounding_ + 1e-9;
 }
 
@@ -168,9 +168,9 @@ bool NeighbourLists::prune(const Snapshot& now) {
   return true;
 }
 
-// Each pair closer than 1 plus the inner margins of its two grains must be in the outer lists. So
-// the inner margin of a grain is at most its outer margin minus its movement so far. Returns false
-// if this difference is less than settings_.inner_margin() for any grain or for the walls.
+// The outer lists must contain each pair whose distance is less than 1 plus its two inner margins.
+// So the inner margin of a grain or of the walls is at most the outer margin minus the movement so
+// far. Returns false if this limit is less than settings_.inner_margin() for a grain or the walls.
 bool NeighbourLists::set_inner_margins(const Snapshot& now) {
   const double least = settings_.inner_margin();
   const double horizon = kInnerHorizon * now.time_step;

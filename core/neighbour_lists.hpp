@@ -53,7 +53,7 @@ class Reference {
   /// Part of each margin [d] that the shear since set() and the rounding of positions use up.
   double margin_loss(double tan_theta) const;
 
-  /// Height [d] at which the moving frame is at rest.
+  /// Height [d] of the top wall at set(). The frame that moves with the shear is at rest there.
   double frame_height() const { return pose_.top; }
   /// One coordinate of all grains in the untilted frame [d], in single precision.
   const float* data(std::size_t axis) const { return at_[axis].data(); }
@@ -67,7 +67,7 @@ class Reference {
 
 /// State of the cell when lists are built or pruned.
 struct Snapshot {
-  double* rows = nullptr;  ///< rows as in kernel.hpp; NeighbourLists writes the margins
+  double* rows = nullptr;  ///< rows as in kernel.hpp; NeighbourLists sets all margins
   const double* velocity[3] = {};
   std::size_t grains = 0;
   WallPose pose;

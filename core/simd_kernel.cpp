@@ -26,7 +26,7 @@ namespace HWY_NAMESPACE {
 // faster (README.md).
 constexpr std::size_t kSlots = HWY_TARGET == HWY_AVX3 ? 4 : 1;
 
-// Computes contact_factor(s) for kCount numbers s <= kSeriesEnd.
+// Computes the function contact_factor for kCount values of s, all <= kSeriesEnd.
 template <std::size_t kCount>
 HWY_INLINE void series_factors(const V* s, V* factor) {
   const double* coefficient = kContactSeries.data() + kContactSeries.size() - 1;

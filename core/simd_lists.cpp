@@ -37,8 +37,9 @@ HWY_INLINE std::size_t store_selected(hn::Vec<Offsets> values, hn::Mask<D> mask,
 }
 
 // Writes the row offsets of the ids to `outer`, in ascending id. The rank of an id is the number of
-// smaller ids. Nearly every list fits in two vectors. Two vectors are always compared: a branch
-// on the length would be mispredicted. `ids` must have room for two vectors after its last entry.
+// smaller ids. Nearly every list fits in two vectors. Each id is compared with two vectors of ids
+// even if the list is shorter, because a branch on the length would be mispredicted. `ids` must
+// have room for two vectors after its last entry.
 HWY_INLINE void write_sorted(const SearchTask& t, std::int32_t* HWY_RESTRICT ids, std::size_t count,
                              std::int32_t* HWY_RESTRICT outer) {
   const hn::ScalableTag<std::int32_t> d;
@@ -94,7 +95,8 @@ class Surroundings {
                       hn::Set(kD, t.grid.position[1][place]),
                       hn::Set(kD, t.grid.position[2][place])};
     const V own_margin = hn::Set(kD, t.grid.margin[place]);
-    // Ids are compared as doubles (exact), so that this mask has the type of the distance mask.
+    // Ids are converted to doubles, which is exact. Comparing the ids then gives a mask of the same
+    // type as comparing the distances.
     const V own_id = hn::Set(kD, static_cast<double>(t.grid.id[place]));
     std::size_t count = 0;
     for (std::size_t k = 0; k < size_; k += kLanes) {
@@ -219,7 +221,7 @@ struct Kept {
   // write_block pads the list of lane l to at least wall[l] + other_slots entries.
   std::int32_t rows[kLanes][2 * kMostNeighbours + 64];
   std::size_t count[kLanes], wall[kLanes];
-  std::size_t other_slots, wall_slots;  // numbers of slots: the largest of all lanes
+  std::size_t other_slots, wall_slots;  // numbers of slots needed: maximum over the lanes
 };
 
 HWY_INLINE void prune_block(const PruneTask& t, std::size_t block, Kept& kept) {

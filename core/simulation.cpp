@@ -222,7 +222,7 @@ void Simulation::zero_slowest_velocities() {
 }
 
 void Simulation::check() const {
-  // Without lists, no step was computed, so the loaded state has not changed.
+  // If no neighbour lists were built, no step was computed, and the loaded state has not changed.
   if (counts_.builds > 0) watch(settings_.limits, 0);
 }
 

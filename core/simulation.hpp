@@ -121,7 +121,7 @@ class Simulation {
   const Kernels& kernels_;
   Team team_;
   std::uint64_t step_ = 0;
-  std::uint64_t sorted_at_ = 0;  // step when the memory was last sorted
+  std::uint64_t sorted_at_ = 0;  // step of the last sort_memory()
   double wall_height_ = 0, wall_velocity_ = 0;
   std::vector<std::int32_t> id_;  // permanent id of each grain, in memory order
   std::array<AlignedVector<double>, 2> rows_;

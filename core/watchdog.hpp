@@ -58,9 +58,9 @@ struct WatchTask {
 /// normal; c is 1 for two grains, and 1/4 for a grain (a) and the moving wall (b). The bound of a
 /// grain is k/m times the largest eigenvalue of the sum of w n n^T over its contacts: w is 2 for
 /// contacts with grains, 1 with fixed walls, 5/4 with the moving wall. The bound of the moving wall
-/// is k 5 (sum of n_y^2) / (mass of the wall). The largest bound is exact for a pair (2 k/m) and
-/// for an FCC crystal (8 k/m). The checks take as long as about four time steps. Throws
-/// NumericalFailure for the failing grain that is stored first in memory.
+/// is 5 k / (mass of the wall) times the sum of n_y^2 over its contacts. The largest bound is exact
+/// for a pair (2 k/m) and for an FCC crystal (8 k/m). The checks take as long as about four time
+/// steps. Throws NumericalFailure for the failing grain that is stored first in memory.
 void check_grains(const WatchTask& task);
 
 }  // namespace shearcell

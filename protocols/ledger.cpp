@@ -105,7 +105,8 @@ Ledger ledger(const Cell& cell, const Scene& scene, const Drive& drive, const St
     return wall_pose(cell, tilt(drive, state.step).theta, state.wall_height);
   };
   Simulation simulation(cell, scene, start);
-  simulation.set_overlap_limit(kLargestOverlapLimit);  // the original run checked the overlaps
+  // The run that recorded `start` applied its own overlap limit. The largest limit is enough here.
+  simulation.set_overlap_limit(kLargestOverlapLimit);
   simulation.advance(drive, 1);
   Ledger sum;
   add_energies(cell, scene, start, simulation.state(), pose_of(start), -1, sum);

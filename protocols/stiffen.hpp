@@ -20,7 +20,7 @@ double raised_stiffness(double first, std::uint64_t step, std::uint64_t steps_pe
 /// Cycle 0 is the settled packing. In each further cycle n, the packing comes to rest with the
 /// stiffness k_0 10^((n - 1)/m), where m is `steps_per_decade`. The step number of the simulation
 /// counts the cycles; no simulated time passes. `scene` holds k_0, gravity and pressure. Each call
-/// of advance() does one whole minimization, because a minimization cannot continue from a state.
+/// of advance() does one whole minimization, because a State cannot hold an unfinished one.
 Protocol stiffen(const StiffenParameters& parameters, const Scene& scene);
 
 }  // namespace shearcell

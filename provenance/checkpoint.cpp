@@ -27,7 +27,8 @@ using hdf5::refuse;
 using hdf5::require;
 using hdf5::Shape;
 
-static_assert(std::endian::native == std::endian::little, "files need little-endian numbers");
+static_assert(std::endian::native == std::endian::little,
+              "the machine must be little-endian, because checkpoint files are");
 
 /// Calls field(name, value) for each number in the group /restart, in the order of the file.
 /// cell_numbers() does the same for /restart/cell.
@@ -221,7 +222,8 @@ std::vector<std::byte> encode_checkpoint(const Checkpoint& checkpoint) {
     const hdf5::Library library(about * static_cast<std::size_t>(checkpoint.state.position.cols()));
     const Handle access(require(H5Pcreate(H5P_FILE_ACCESS), "a property list"), H5Pclose);
     require(H5Pset_fapl_core(access.get(), 1 << 20, false), "a memory file");
-    // The oldest superblock has no checksum. In newer ones, HDF5 1.10 writes a wrong checksum.
+    // Selects the oldest version of the superblock, which has no checksum. In newer versions,
+    // HDF5 1.10 writes a wrong checksum.
     require(H5Pset_libver_bounds(access.get(), H5F_LIBVER_EARLIEST, H5F_LIBVER_V18), "version");
     const Handle creation = creation_list(H5P_FILE_CREATE);
     require(H5Pset_userblock(creation.get(), hdf5::kFrameSize), "a user block");
@@ -237,7 +239,7 @@ std::vector<std::byte> encode_checkpoint(const Checkpoint& checkpoint) {
     image = framed_image(file);
   } catch (const std::runtime_error&) {
     if (const auto no_memory = std::get_new_handler()) no_memory();
-    throw std::bad_alloc();  // the file is in memory, so memory ran out
+    throw std::bad_alloc();  // the file exists only in memory, so the cause is a lack of memory
   }
   const std::string frame =
       hdf5::frame_text(sha256_hex(std::span(image).subspan(hdf5::kFrameSize)));

@@ -135,8 +135,9 @@ std::string DerivedCache::replaced() const {
   const fs::path kept = damaged_name(file_, 1);
   if (!fs::exists(kept, ignored)) return "";
   return fmt::format(
-      "{}: the file was damaged and is kept as {}, so measures of pruned checkpoints are missing; "
-      "restore it from a backup, or recompute the checkpoints by `shearcell regenerate --all`",
+      "{}: the file was damaged, so measures of pruned checkpoints are missing. The damaged file "
+      "is kept as {}. Restore the file from a backup, or recompute the checkpoints by "
+      "`shearcell regenerate --all`",
       file_.string(), kept.filename().string());
 }
 

@@ -162,7 +162,7 @@ sqlite::Database open_database(const std::filesystem::path& file, Access access)
       "PRAGMA synchronous=EXTRA;");
   if (database.integer("PRAGMA page_count") == 0) {
     const std::filesystem::path folder = file.parent_path(), objects = folder / "objects";
-    std::error_code unreadable;  // such a folder does not count as empty
+    std::error_code unreadable;  // an unreadable folder counts as not empty
     if (std::filesystem::exists(folder / DerivedCache::kFile) ||
         (std::filesystem::exists(objects) && !std::filesystem::is_empty(objects, unreadable))) {
       throw StoreDamaged(file.string() +

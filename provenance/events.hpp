@@ -17,7 +17,7 @@
 namespace shearcell::events {
 
 // `fields` calls `field` for each member of a payload, for reading and for writing. If the third
-// argument of this call is `true`, the member may be missing, and is written only if it is not
+// argument of `field` is `true`, the member may be missing, and is written only if it is not
 // empty. All other members are required. std::optional members may be null.
 
 /// Base of the events that hold the text of a file.

@@ -16,10 +16,12 @@ namespace {
 
 using Bytes = std::span<const std::byte>;
 
-static_assert(std::endian::native == std::endian::little, "files need little-endian numbers");
+static_assert(std::endian::native == std::endian::little,
+              "the machine must be little-endian, because checkpoint files are");
 
-/// Types of messages in an object header (section IV.A.2 of the format). Other messages are
-/// ignored. An object that stores its links or its layout in such a message seems to have none.
+/// Types of messages in an object header (section IV.A.2 of the format). Messages of other types
+/// are ignored. If an object stores its links or its layout in an ignored message, it is read as an
+/// object without links or without a layout.
 enum Message : std::uint64_t {
   kSpace = 1,
   kType = 3,

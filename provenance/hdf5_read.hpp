@@ -49,12 +49,13 @@ class Object {
   std::vector<std::string> names() const;  ///< names of the members of a group, sorted
 
   // The value of a scalar attribute.
-  double number(const std::string& name) const;        ///< finite
+  double number(const std::string& name) const;        ///< a finite number
   std::uint64_t count(const std::string& name) const;  ///< 64 bits, unsigned
   std::string text(const std::string& name) const;     ///< at most 4096 bytes
 
-  // All values of a dataset with `columns` columns, row by row. 0: the dataset is one-dimensional.
-  std::vector<double> numbers(const std::string& name, std::uint64_t columns) const;  ///< finite
+  // All values of a dataset, row by row. `columns` is the number of columns, or 0 for a
+  // one-dimensional dataset. The values that numbers() returns are finite.
+  std::vector<double> numbers(const std::string& name, std::uint64_t columns) const;
   std::vector<std::uint8_t> bytes(const std::string& name) const;
 
  private:

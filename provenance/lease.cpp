@@ -69,10 +69,11 @@ std::optional<std::uint64_t> start_of(std::uint64_t pid) {
   std::ifstream file(fmt::format("/proc/{}/stat", pid));
   std::string line;
   if (!std::getline(file, line)) return std::nullopt;
-  // The second field is the program's name in parentheses and may contain any character.
+  // The second field is the program's name in parentheses and may contain any character. So
+  // `fields` begins with the third field of the line.
   std::istringstream rest(line.substr(line.rfind(')') + 1));
   const std::vector<std::string> fields(std::istream_iterator<std::string>(rest), {});
-  constexpr std::size_t kState = 0, kStart = 19;  // indices of fields 3 and 22 of the line
+  constexpr std::size_t kState = 0, kStart = 19;  // fields 3 and 22 of the line
   if (fields.size() <= kStart) return std::nullopt;
   if (fields[kState] == "Z" || fields[kState] == "X") return 0;
   return std::stoull(fields[kStart]);

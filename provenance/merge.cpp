@@ -51,7 +51,8 @@ void require_agreement(const Database& into, const std::string& name,
                        const std::vector<Source>& sources) {
   using Step = std::pair<std::string, std::uint64_t>;  // run and step
   using States = std::set<std::string>;
-  // Each entry also holds the name of the first store that has this run, or a state at this step.
+  // Each entry ends with the name of a store: in `runs`, the first store that has the run; in
+  // `states`, the first store that has a state of the run at this step.
   std::map<std::string, std::pair<Stage, std::string>> runs;
   std::map<Step, std::pair<States, std::string>> states;
   const auto compare = [&](const Database& tables, const std::string& store) {
@@ -118,9 +119,9 @@ std::vector<std::byte> read_object(const Source& source, const CheckpointRecord&
 
 using Stream = std::vector<const Event*>;  // in the order of the log
 
-/// Decides which events of one run are copied. If the store does not have the run, every attempt is
-/// copied. Otherwise an attempt is copied if it recorded a new checkpoint (see is_news). The last
-/// attempt is also copied if `source_wins` is true.
+/// Decides which events of one run are copied from the source to the store. If the store does not
+/// have the run, every attempt is copied. Otherwise an attempt is copied if it recorded a new
+/// checkpoint (see is_news). The last attempt is also copied if `source_wins` is true.
 struct RunMerge {
   std::optional<Stage> before;       ///< the run in the store before the merge
   std::optional<Event> last_claim;   ///< last event in the store that began or ended an attempt
@@ -219,8 +220,8 @@ Source read_source(const std::filesystem::path& folder, const std::set<std::stri
   {
     const sqlite::ReadTransaction snapshot(database);
     if (const auto fault = log.verify_chain()) {
-      throw StoreDamaged(
-          fmt::format("{}: {}. Nothing was merged from it", folder.string(), fault->message));
+      throw StoreDamaged(fmt::format("{}: {}. Nothing was merged from this store", folder.string(),
+                                     fault->message));
     }
     source.head = log.head();
     source.events = log.events();
@@ -336,8 +337,8 @@ std::vector<MergeReport> Store::merge(const std::vector<std::filesystem::path>& 
         sqlite::WriteTransaction lock(database_);
         require_idle(*this);
         merge_events(database_, log_, lock, source, report);
-        // After the copied events, a checkpoint may still be marked as rejected, although the file
-        // that was copied is valid.
+        // After the copied events have been applied, a checkpoint may still be marked as rejected,
+        // although its copied file is valid.
         for (const CheckpointRecord& record : needed) {
           const auto now = query_checkpoint(database_, record.run, record.sha256);
           if (!now || now->state != CheckpointState::rejected) continue;

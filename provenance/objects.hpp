@@ -22,8 +22,8 @@ class ObjectStore {
   explicit ObjectStore(std::filesystem::path store_folder);
 
   /// Writes the bytes to disk (with fsync) and returns their SHA-256. Keeps an existing object if
-  /// it is valid, otherwise replaces it. Throws std::system_error, and StoreDamaged when `objects`
-  /// or a folder in it is a file or a link.
+  /// it is valid, otherwise replaces it. Throws std::system_error if writing fails. Throws
+  /// StoreDamaged if a file or a link is in the place of `objects` or of the object's subfolder.
   std::string put(std::span<const std::byte> bytes);
 
   /// Reads an object. Throws StoreDamaged, with the file's name, if its size or its hash differs.

@@ -120,16 +120,17 @@ class Projector {
                       event_.seq, event_.type, event_.stream));
     }
     require_cycles(ask.target_cycles, ask.checkpoint_every);
-    // A completed run becomes `declared` if the new target exceeds the old target, or the cycle at
-    // which `until` ended the run before the old target.
+    // A completed run becomes `declared` again if the new target exceeds the old target or the last
+    // cycle of the run. `until` may have ended the run before the old target.
     run("INSERT INTO runs(id, ordinal, parent, kind, resolved, state, grains, target_cycles, "
         "updated_at) VALUES(?,?,NULLIF(?,''),?,?,'declared',?,?,?) ON CONFLICT(id) DO UPDATE SET "
         "state = iif(state = 'completed' AND min(target_cycles, cycle) < excluded.target_cycles, "
         "'declared', state), target_cycles = max(target_cycles, excluded.target_cycles)",
         id_, event_.seq, d.parent, d.kind, d.resolved.dump(), d.grains, ask.target_cycles,
         event_.recorded_at);
-    // A repeated declaration makes the run the last one that was declared for its place (see
-    // holds_place()), unless the declaration raises the target or changes the checkpoint interval.
+    // A repeated declaration sets `ordinal`, so that the run becomes the last one of its place (see
+    // holds_place()). If the declaration raises the target or changes the checkpoint interval,
+    // `ordinal` stays the same.
     run("INSERT INTO memberships VALUES(?,?,?,?,?,?,?,?,?,?,?,?) ON CONFLICT DO UPDATE SET "
         "ordinal = iif(excluded.target_cycles <= target_cycles AND excluded.checkpoint_every = "
         "checkpoint_every, excluded.ordinal, ordinal), "
@@ -222,8 +223,8 @@ class Projector {
     run("UPDATE runs SET state = 'running', error = '', attempts = attempts + 1 WHERE id = ?", id_);
   }
 
-  /// Records `manifest` as the newest manifest of this experiment and scale, unless the manifest
-  /// that is recorded as the newest now was registered later.
+  /// Records `manifest` as the newest manifest of this experiment and scale, unless the
+  /// manifest recorded so far was registered later than `manifest`.
   void show_newest(const std::string& experiment, const std::string& scale,
                    const std::string& manifest) const {
     run("INSERT INTO newest VALUES(?1, ?2, ?3) ON CONFLICT DO UPDATE SET manifest = ?3 WHERE "
@@ -241,9 +242,10 @@ class Projector {
     run("UPDATE checkpoints SET state = ?3 WHERE run = ?1 AND sha256 = ?2", id_, sha256, state);
   }
 
-  /// Sets cycle, step and state hash of the run to those of its last recorded checkpoint. Does
-  /// nothing if the step of the run is later than the step of checkpoint `sha256`: the checkpoint
-  /// at the later step may be pruned, and pruning must not set the run back.
+  /// Called after checkpoint `sha256` was recorded, rejected or regenerated. Sets cycle, step and
+  /// state hash of the run to those of the run's last recorded checkpoint. Does nothing if the run
+  /// has reached a later step than checkpoint `sha256`: the checkpoint at that later step may be
+  /// pruned, and pruning must not set the run back.
   void move_to_furthest_from(const std::string& sha256) const {
     run("UPDATE runs SET (cycle, step, state_hash) = (SELECT coalesce(max(cycle), 0), "
         "coalesce(max(step), 0), coalesce(max(state_hash), '') FROM (SELECT * FROM checkpoints "

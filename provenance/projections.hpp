@@ -53,8 +53,8 @@ std::map<std::string, TableRows> projection_rows(const sqlite::Database& databas
 NotFound unknown_stage(std::string_view id);
 NotFound unknown_checkpoint(std::string_view run, std::string_view sha256);
 
-/// Whether the stored stage `known` lacks the place of `wanted`, or has that place with a smaller
-/// target or another checkpoint interval. True if no stage is stored.
+/// Whether the stored stage `known` has no membership with the place of `wanted`, or has one with a
+/// smaller target or another checkpoint interval. True if `known` is empty.
 bool adds_something(const std::optional<Stage>& known, const Membership& wanted);
 /// False if another run was declared for `place` after `run`, for example from another packing.
 bool holds_place(const sqlite::Database& database, std::string_view run, const Place& place);

@@ -72,7 +72,7 @@ inline std::string variant_in_words(const std::string& variant) {
   return variant == "base" ? "no sweep" : variant;
 }
 
-/// Which checkpoints to list. `and_pruned`: recorded and pruned. `all`: also rejected ones.
+/// Which checkpoints to list. `and_pruned`: also pruned ones. `all`: also pruned and rejected ones.
 enum class Listed { recorded, and_pruned, all };
 
 /// If two stores hold a stage at the same step, a merge keeps the state that is later in this list.

@@ -92,7 +92,7 @@ json add_checkpoint(Graph& graph, const CheckpointHistory& checkpoint) {
   return add(graph, std::move(entity));
 }
 
-/// Adds the program that computed an attempt.
+/// Adds the program of an attempt.
 json add_software(Graph& graph, const Maker& maker) {
   const std::string libraries = fmt::format("{}", fmt::join(maker.libraries, ", "));
   const std::string id = sha256_hex(maker.program + maker.flags + libraries).substr(0, 16);

@@ -12,7 +12,8 @@ namespace shearcell {
 
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "hashes need little-endian numbers");
+static_assert(std::endian::native == std::endian::little,
+              "the machine must be little-endian, because little-endian numbers are hashed");
 
 void require_done(int result) {
   if (result != 1) throw std::runtime_error("OpenSSL cannot compute SHA-256 on this machine");

@@ -63,7 +63,8 @@ Database::Database(const std::filesystem::path& file, Access access)
     full_name_ = sqlite::full_name(file);
     require_plain_files(full_name_);
   }
-  // SQLite creates files with mode 0644. A folder that a group shares needs 0666 minus umask.
+  // SQLite creates files with mode 0644. In a folder that a group shares, files need mode 0666
+  // minus umask.
   if (access == Access::create && !full_name_.empty()) {
     Descriptor(open(full_name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
   }

@@ -380,7 +380,7 @@ CheckpointRecord Store::record_checkpoint(const std::string& id, const Checkpoin
                                 .state_hash = state,
                                 .observables = checkpoint.observables};
   append_held(id, encode(events::CheckpointRecorded{{record}, effort}), false);
-  // A concurrent `prune` may have deleted the file before this event.
+  // A concurrent `prune` may have deleted the file before the event was appended.
   if (old && !objects_.contains(sha256)) objects_.put(bytes);
   return query_checkpoint(database_, id, sha256).value();
 }

@@ -99,7 +99,8 @@ class Store {
   std::string register_manifest(std::string_view text, std::string_view path,
                                 const nlohmann::json& info);
 
-  /// Stores the text of a file of grain positions, only once, and returns its SHA-256.
+  /// Stores the text of a file of grain positions, unless the store already has it. Returns the
+  /// SHA-256 of the text.
   std::string register_packing(std::string_view text, std::string_view path);
   /// The text of the file of grain positions that has this SHA-256, and the path that
   /// register_packing() recorded. Throws StoreDamaged if the store lacks the text.
@@ -107,18 +108,18 @@ class Store {
 
   /// Records each membership of the stage for which one of these is true: the store does not have
   /// the membership; the store has it with a smaller target or another checkpoint interval; another
-  /// stage was declared later for the place of the membership. A larger target makes a completed
-  /// stage `declared` again. Throws std::invalid_argument when the id is not a SHA-256 or was
-  /// recorded with other parameters, or when the parent was not declared.
+  /// stage was declared for the membership's place after this stage. A larger target makes a
+  /// completed stage `declared` again. Throws std::invalid_argument when the id is not a SHA-256 or
+  /// was recorded with other parameters, or when the parent was not declared.
   void declare_stage(const Stage& stage);
 
   /// Starts an attempt and returns its number, from 1. With `from_sha256` the attempt continues
   /// from this checkpoint of the run. `parent_checkpoint`, the initial state, is only recorded.
   /// `fill` is for a run that is already completed: the attempt records missing checkpoints before
   /// the last one, and then completes the run again. Throws NotFound when the run or the checkpoint
-  /// is unknown, and ConcurrencyConflict when this object or another program holds the run. Without
-  /// `fill`, also throws ConcurrencyConflict when the run is completed or a later checkpoint was
-  /// recorded; with `fill`, when the run is not completed.
+  /// is unknown. Throws ConcurrencyConflict in these cases: this object or another program holds
+  /// the run; `fill` is true, but the run is not completed; `fill` is false, but the run is
+  /// completed or has reached a later step than the step from which the attempt starts.
   std::uint64_t start_stage(const std::string& id, const nlohmann::json& host,
                             const std::optional<std::string>& from_sha256 = std::nullopt,
                             const std::string& parent_checkpoint = "", bool fill = false);

@@ -8,7 +8,7 @@
 
 namespace shearcell {
 
-/// Measures the time since construction or the last restart() with the steady clock [s].
+/// Measures the time [s] since construction or since the last restart(). Uses the steady clock.
 class Stopwatch {
  public:
   double seconds() const {

@@ -43,7 +43,8 @@ void sync(const Descriptor& file, const std::filesystem::path& path);
 
 /// Deletes the temporary files and folders that killed programs left in `folder` and, if `below` is
 /// true, in its subfolders. Their names are ".tmp-<pid>-*" or ".*.tmp-<pid>-*". A file or
-/// folder is kept while process <pid> runs or any process, perhaps in a container, has locked it.
+/// folder is kept while process <pid> runs, and while any process, perhaps in a container, holds a
+/// lock on it.
 void remove_leftovers(const std::filesystem::path& folder, bool below = false);
 
 /// Writes `bytes` to a temporary file in the open `folder`, named ".tmp-<pid>-<n>", with mode 0666
@@ -88,7 +89,8 @@ class NewFile {
 /// A new temporary folder that only this user can read; the destructor deletes it with its content.
 /// The folder lies in TMPDIR (by default /tmp), unless `prefix` is an absolute path. The name is
 /// `prefix` + "<pid>-" + six random characters. The constructor calls remove_leftovers() for the
-/// parent folder and throws std::system_error with its path when no folder can be created.
+/// parent folder. Throws std::system_error, which names the parent folder, if the temporary folder
+/// cannot be created.
 class TemporaryFolder {
  public:
   explicit TemporaryFolder(const std::string& prefix = ".shearcell.tmp-");
