@@ -58,8 +58,9 @@ void add_variant_and_seed(CLI::App& command, std::vector<std::string>& variants,
                           std::vector<std::uint64_t>& seeds) {
   add_each(
       command, "--variant", variants,
-      "Only runs with this swept value, such as fluid=cell, or with this label, as `status` prints "
-      "it. If several values are given, a run must have one of the values of each key",
+      "Only runs with this swept value (KEY=V, such as fluid=cell) or with this label. Both may be "
+      "written as `status` prints them. For each key that is given, a run must have one of the "
+      "values given for this key",
       "KEY=V");
   const auto take = [&seeds](const std::vector<std::string>& lists) {
     for (const std::string& list : lists) add_seeds(list, seeds);
@@ -92,14 +93,14 @@ void order_by_start(std::vector<Manifest>& manifests) {
       });
     };
     const auto ready = std::find_if_not(next, manifests.end(), waits);
-    if (ready == manifests.end()) return;  // circular starts; expand() reports the missing runs
+    if (ready == manifests.end()) return;  // starts form a circle; expand() reports missing runs
     std::rotate(next, ready, ready + 1);
   }
 }
 
-// Figures show only the runs of the newest manifest of each experiment and scale. Warns if, after
-// this plan is run, figures will omit runs of `known`: runs in the store or in earlier plans of the
-// same command.
+// Figures show only the runs of the newest manifest of each experiment and scale. `known` are the
+// runs in the store and in earlier plans of the same command. Warns if figures will omit some of
+// them after this plan is run.
 void warn_of_other_version(const Plan& plan, const std::vector<Stage>& known, Context& context) {
   const Manifest& manifest = plan.manifest;
   std::set<std::string> planned;
@@ -116,9 +117,9 @@ void warn_of_other_version(const Plan& plan, const std::vector<Stage>& known, Co
   warn(context,
        fmt::format(
            "{}: the newest manifest of experiment {} differs from this file and has {} "
-           "that the plan of this file lacks. After this plan is run, figures omit these runs. "
-           "To show all runs, run one manifest that lists all of them; only missing runs are "
-           "computed.",
+           "that the plan of this file lacks. If you run this plan, figures will omit the runs "
+           "that it lacks. To show all runs, run one manifest that lists all of them; only missing "
+           "runs are computed.",
            manifest.file, manifest.experiment, counted(static_cast<std::size_t>(left_out), "run")));
 }
 

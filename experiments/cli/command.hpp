@@ -121,7 +121,7 @@ struct PlacedRun {
   std::vector<Membership> places;
 };
 
-/// Groups the runs by stage, in the order in which the stages first occur.
+/// Returns each stage of the runs once, with all its places, in the order of first occurrence.
 std::vector<PlacedRun> by_run(const std::vector<Run>& selected);
 
 /// Returns an error message if the text is not a decimal number from `low` to `high`, else "". A

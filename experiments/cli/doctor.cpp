@@ -73,8 +73,8 @@ Check filesystem(const fs::path& place) {
   }
   return {
       "file system", fmt::format("network (type {:#x})", type), "slow",
-      "keep the store on a local disk and `merge` it later, because SQLite needs file locks, which "
-      "are unreliable on a network"};
+      "SQLite needs file locks, which are unreliable on a network: keep the store on a local disk, "
+      "and `merge` it later"};
 }
 
 Check writing(const std::string& store, const fs::path& place) {

@@ -111,7 +111,7 @@ std::vector<CheckpointRecord> chosen(const Store& store, const PlacedRun& run,
   const CycleRange range = parse_cycles(cycles);
   const std::optional<Drive> motion = shear_drive(stage);
   const double near = motion ? 0.5 / static_cast<double>(cycle_steps(*motion)) : 0;
-  // A single cycle may also select a checkpoint that exists only because of an interruption.
+  // For a single cycle, also considers checkpoints that exist only because of an interruption.
   const std::vector<CheckpointRecord> all =
       range.first == range.last ? store.checkpoints(stage.id, Listed::and_pruned)
                                 : checkpoints_for(store, stage, asks_of(run.places));

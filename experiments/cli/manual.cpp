@@ -146,7 +146,7 @@ std::string command_reference(const CLI::App& command, const std::string& path) 
   return text;
 }
 
-/// The text of experiments/REFERENCE.md. The test docs.reference compares the text with this file.
+/// The text that experiments/REFERENCE.md must have. The test docs.reference checks the file.
 std::string reference(const CLI::App& program) {
   std::string text =
       "# Reference\n\n"

@@ -130,12 +130,12 @@ std::vector<std::string> powers_of(const Store& store, const Plan& plan) {
   return powers;
 }
 
-// For each experiment, adds a note on the work that the next look (interim analysis) needs, and on
-// the chance that it decides the claims. As in verdicts, runs that failed or cannot start count as
-// ended.
+// For each experiment, adds a note on the next look (interim analysis): the work that this look
+// needs, and the chance that the look decides each claim. As in verdicts, runs that failed or
+// cannot start count as ended.
 void note_looks(const std::vector<Plan>& plans, const std::vector<Line>& lines, const Store* store,
                 const std::vector<Stage>& known, std::vector<std::string>& notes) {
-  std::set<std::string> failed, recorded;  // ids of stages; names of experiments
+  std::set<std::string> failed, recorded;  // failed: ids of stages; recorded: names of experiments
   for (const Stage& stage : known) {
     if (stage.state == StageState::failed) failed.insert(stage.id);
     for (const Membership& m : stage.memberships) recorded.insert(m.place.experiment);
@@ -168,17 +168,17 @@ void note_looks(const std::vector<Plan>& plans, const std::vector<Line>& lines, 
           plan.manifest.experiment, *next, counted(scale.seeds.values.size(), "seed"),
           left_at(*next),
           powers.empty()
-              ? "The chance that this look decides a claim is known after `figures` has measured "
-                "some runs"
-              : fmt::format("If the present estimates are the true values, each claim is decided "
-                            "at or before this look with probability: {}",
+              ? "Until `figures` has measured some runs, `plan` cannot estimate the probability "
+                "that this look decides a claim"
+              : fmt::format("Probability that a claim is decided at or before this look, if the "
+                            "present estimates are the true values: {}",
                             fmt::join(powers, ", "))));
     }
   }
 }
 
-// Estimates the particle-steps that are left if each `until` is reached at the mean cycle at which
-// earlier runs reached it. Null if no run has an `until`, or if some `until` was never reached.
+// Estimates the particle-steps that are left if each `until` is reached at the same cycle as in
+// earlier runs, on average. Null if no run has an `until`, or if some `until` was never reached.
 nlohmann::json left_until(const std::vector<Line>& lines, const std::vector<Stage>& known) {
   std::map<nlohmann::json, std::optional<double>>
       ends;  // `until` -> expected last cycle; cached, since expected_end() reads all runs
@@ -212,11 +212,12 @@ void print_until(const std::vector<Line>& lines, const nlohmann::json& left, dou
   fmt::print("      `until` ({}): ", fmt::join(ends, "; "));
   if (left.is_null()) {
     fmt::print(
-        "fewer particle-steps; no estimate before each condition has ended at least one run\n");
+        "fewer particle-steps; an estimate needs, for each condition, a run that the condition "
+        "has ended\n");
   } else {
     fmt::print(
-        "about {:.3g} particle-steps ({:.0f} % of those above) if these runs end at the "
-        "mean cycle at which `until` ended earlier runs\n",
+        "about {:.3g} particle-steps ({:.0f} % of the number above) if `until` ends these runs at "
+        "the same cycle as earlier runs, on average\n",
         left.get<double>(), at_most > 0 ? 100 * left.get<double>() / at_most : 100);
   }
 }
@@ -316,7 +317,7 @@ void plan(const PlanOptions& options, Context& context) {
   note_looks(plans, lines, store ? &*store : nullptr, runs, notes);
   if (longer > 0) {
     notes.push_back(fmt::format(
-        "`run` also continues {} to the larger number of cycles that an earlier command requested",
+        "an earlier command requested more cycles for {}; `run` also computes these cycles",
         counted(longer, "run")));
   }
   const std::string experiment =

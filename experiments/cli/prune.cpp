@@ -118,7 +118,7 @@ void prune(const PruneOptions& options, Context& context) {
   if (go) {
     const MeasureOptions measuring{
         .workers = usable_cores(),
-        .report = terminal_counter("before files are deleted: measuring checkpoint")};
+        .report = terminal_counter("measuring before files are deleted: checkpoint")};
     freed = free_files(store, records, measuring, options.choice.last_too, context);
     freed.bytes += store.prune(leftovers);
   }
@@ -261,7 +261,7 @@ Freed free_files(Store& store, std::vector<CheckpointRecord>& records,
     print_problems(outcome, "not measured", context);
     if (!outcome.cache_trouble.empty()) fail(context, kOtherError);
     if (records.size() < chosen) {
-      print_stderr("kept: the files of {} that could not be measured\n",
+      print_stderr("kept, because measuring failed: the files of {}\n",
                    counted(chosen - records.size(), "checkpoint"));
     }
   }
@@ -278,8 +278,8 @@ void add_prune(CLI::App& app, Context& context) {
   add_number(*command, "--keep-every", options->choice.keep_every,
              "Keep the files of every K-th cycle", "K", 1, 1'000'000'000);
   command->add_flag("--last-too", options->choice.last_too,
-                    "For completed stages, also delete the last file and files that other stages "
-                    "start from");
+                    "For completed stages, also delete the files of the newest checkpoint and of "
+                    "checkpoints from which other stages start");
   command->add_flag("--yes,-y", options->yes, "Delete without asking");
   add_common_options(
       *command, context,

@@ -86,8 +86,8 @@ void add_report(CLI::App& app, Context& context) {
       ->type_name("FILE");
   add_selection_options(*sub, options.runs);
   sub->get_option("--scale")->expected(1)->description(
-      "Only runs of this scale (default: runs of all scales, but figures of only one scale: that "
-      "of the run added last)");
+      "Only runs of this scale. Default: runs of all scales; each figure shows only the scale "
+      "of the run that was added last");
   sub->add_option("--run", packings.runs,
                   "Show these runs in 3D instead of the last run of each variant")
       ->type_name("RUN");
@@ -99,12 +99,12 @@ void add_report(CLI::App& app, Context& context) {
              100000)
       ->capture_default_str();
   add_number(*sub, "--packings-mb", command->megabytes,
-             "Largest total size of packings in 3D; checkpoints that do not fit are left out", "MB",
-             0, 1000)
+             "Largest total size of the packings in 3D; fewer checkpoints are shown if necessary",
+             "MB", 0, 1000)
       ->capture_default_str();
   sub->add_flag_callback(
          "--drawings", [&options] { options.interactive = false; },
-         "Show static figures drawn by gnuplot, without JavaScript and packings")
+         "Show static figures drawn by gnuplot, and no packings; the page has no JavaScript")
       ->excludes("--run");
   add_common_options(
       *sub, context,

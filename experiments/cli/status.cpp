@@ -152,7 +152,7 @@ struct Estimate {
   std::string problem;  ///< why the work is unknown (a run cannot be read); "" if it is known
   Work work;
   std::size_t at_a_time = 1;  ///< number of stages computed at a time
-  bool running = false;  ///< whether a run is computed now; if not, seconds() assumes all cores
+  bool running = false;  ///< a run is computed now; if false, seconds() is the time on all cores
   bool at_most = false;  ///< the time is an upper limit: `until` may end runs early
 
   bool any() const { return problem.empty() && work.stages > 0; }
@@ -253,7 +253,7 @@ void print(const View& view) {
   for (const Submission& submission : view.queue.submissions) {
     if (problem.empty()) print_text("{}\n", describe(submission));
   }
-  if (!problem.empty()) print_text("The queue of the cluster is unknown: {}\n", problem);
+  if (!problem.empty()) print_text("The queue of the cluster cannot be read: {}\n", problem);
   for (const auto& [stage, places] : view.runs) {
     if (!stage.error.empty()) print_text("{}: {}\n", stage.id.substr(0, 8), stage.error);
     if (const std::string why = describe_end(end_of(stage)); !why.empty()) {

@@ -158,8 +158,9 @@ void check_time(const JobOptions& job) {
   }
   if (*limit <= needed) {
     throw CLI::ValidationError(
-        "--time", fmt::format("a limit of {} s leaves no time to compute: a task may stop {} s "
-                              "before the limit; increase --time or reduce --warn",
+        "--time", fmt::format("a limit of {} s leaves no time to compute, because Slurm can warn "
+                              "a task as early as {} s before the limit; increase --time or reduce "
+                              "--warn",
                               *limit, needed));
   }
 }
@@ -205,8 +206,9 @@ std::string check_sbatch(const std::string& text) {
   for (const std::string taken : {"--array", "--clusters", "--test-only", "--wait", "--wrap"}) {
     if (!taken.starts_with(option)) continue;  // sbatch accepts abbreviated options
     return fmt::format(
-        "'{}': with {}, `submit` cannot queue and follow its jobs. Remove this option. "
-        "(--array-size limits the number of tasks. To use another cluster, run `submit` there.)",
+        "'{}': remove {}. With this option, `submit` cannot queue its jobs and follow their "
+        "progress. (--array-size limits the number of tasks. To use another cluster, run `submit` "
+        "there.)",
         printable(text), taken);
   }
   return unfit_value(text);
@@ -235,9 +237,10 @@ void add_job_options(CLI::App& command, SubmitOptions& options) {
                   "results are copied to the task's store every five minutes")
       ->check(unfit_scratch)
       ->type_name("DIR");
-  add_number(command, "--warn", job.warn_seconds,
-             "How long before its time limit [s] a task writes checkpoints and queues itself again",
-             "S", 10, 3600)
+  add_number(
+      command, "--warn", job.warn_seconds,
+      "A task writes checkpoints and queues itself again this many seconds before its time limit",
+      "S", 10, 3600)
       ->capture_default_str();
   command.add_option("--sbatch", job.sbatch, "Further option of sbatch, such as --sbatch=--mem=2G")
       ->check(check_sbatch)

@@ -56,9 +56,9 @@ void add_core_times(const Store& store, CollectedRuns& collected) {
 }
 
 /// Adds to each run the checkpoints that the figure needs, up to the end of the run. Removes runs
-/// without a checkpoint that the figure needs. Adds notes on removed runs, on unfinished runs, and
-/// on checkpoints that the manifest asks for and the run did not record. FigureForm::table needs
-/// only the last checkpoint of each run: no run is removed and no note is added.
+/// that have none of these checkpoints. Adds notes on removed runs, on unfinished runs, and on
+/// checkpoints that the manifest asks for and the run did not record. For FigureForm::table, which
+/// needs only the last checkpoint of each run, removes no run and adds no note.
 void add_checkpoints(const Store& store, const Figure& figure, const MeasureOptions& measuring,
                      CollectedRuns& collected) {
   const auto [first, last] =

@@ -37,16 +37,16 @@ struct WantedFigure {
 
 /// The figures that are listed or defined in registered manifests.
 struct WantedFigures {
-  /// Sorted by experiment; figures of all experiments are last. Within an experiment, figures that
-  /// the manifest lists in `figures` come before figures that its `plots` and `claims` define.
+  /// Sorted by experiment. Figures across experiments come last. Within an experiment, figures
+  /// that the manifest lists in `figures` come before figures that its `plots` and `claims` define.
   std::vector<WantedFigure> figures;
   std::vector<std::string> unknown;  ///< a message for each unknown name
 };
 
-/// Returns the figures, plots and claims of the newest manifests that have one of `names` and
-/// belong to one of `experiments`. An empty list excludes nothing. If both lists are given, a named
-/// figure of all_figures() is returned even for experiments whose manifests do not list the figure.
-/// Throws NotFound for an unknown figure or experiment; the message proposes the nearest name.
+/// Returns the figures, plots and claims with these names from the newest manifests of these
+/// experiments. An empty list excludes nothing. If both lists are given, a named figure of
+/// all_figures() is returned even for experiments whose manifests do not list the figure. Throws
+/// NotFound for an unknown figure or experiment; the message proposes the nearest name.
 WantedFigures wanted_figures(const Store& store, const std::vector<std::string>& names = {},
                              const std::vector<std::string>& experiments = {});
 
@@ -64,7 +64,7 @@ std::vector<FrameRun> frame_runs(std::vector<Run> selected, std::vector<std::str
 /// cycle that the run's stage has reached.
 void leave_out_unmeasured(FrameRun& run);
 
-/// Measures the checkpoints of the runs. For a measure that needs an earlier checkpoint, a
+/// Measures the checkpoints of the runs. Some measures also need an earlier checkpoint. An earlier
 /// checkpoint at a whole cycle is used only if this cycle is a multiple of Ask::checkpoint_every.
 MeasureOutcome measure_runs(const Store& store, std::vector<FrameRun>& runs,
                             std::span<const std::string> providers, const MeasureOptions& options);

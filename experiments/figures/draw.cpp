@@ -26,8 +26,8 @@
 namespace shearcell {
 namespace {
 
-/// The runs of the figure with the states that the figure used. These include the states of earlier
-/// checkpoints if a measure of the figure is a change between two checkpoints.
+/// The runs of the figure, each with the states that the figure used. States of earlier checkpoints
+/// are included if a measure of the figure is a change between two checkpoints.
 nlohmann::json inputs_of(const Store& store, const ComputedFigure& figure,
                          const std::vector<FrameRun>& runs) {
   nlohmann::json list = nlohmann::json::array();
@@ -63,9 +63,9 @@ void record(Store& store, const std::string& name, nlohmann::json facts) {
   store.record("figure/" + name, {events::kFigureGenerated, facts});
 }
 
-/// Returns "drag/desk", or "desk" for a figure of all experiments. This is the path of the figure's
-/// files in the output folder, and the beginning of its record's name. Throws StoreDamaged if a
-/// name in the store cannot be a folder name.
+/// Returns EXPERIMENT/SCALE, such as "drag/desk", or only SCALE for a figure of all experiments.
+/// This is the path of the figure's files in the output folder, and the beginning of its record's
+/// name. Throws StoreDamaged if a name in the store cannot be a folder name.
 std::string place_of(const ComputedFigure& figure) {
   const std::string scale = scale_name(figure.scale);
   for (const auto& [what, name] :
@@ -153,7 +153,7 @@ std::string verdict_text(const ComputedFigure& figure) {
 /// Sets Verdict::primary from the key `primary` of the experiment's manifest at this scale. A
 /// figure of all experiments uses all manifests. A manifest names a claim by the claim's id, with
 /// or without the value of `for_each`. Older manifests name a claim by its statement. If all runs
-/// are selected, adds a note for each id that names a value for which the claim has no verdict.
+/// are selected, adds a note for each id with a value of `for_each` that has no verdict.
 void mark_primary(const std::vector<RegisteredManifest>& manifests, const RunSelection& selected,
                   ComputedFigure& figure) {
   for (const RegisteredManifest& manifest : manifests) {
@@ -161,7 +161,7 @@ void mark_primary(const std::vector<RegisteredManifest>& manifests, const RunSel
     for (const Scale& scale : scales_of(manifest.content)) {
       if (scale.name != figure.scale && !scale.name.empty()) continue;
       for (const PrimaryClaim& primary : scale.primary) {
-        bool named = false, same_claim = false;  // same_claim: ids are equal up to @
+        bool named = false, same_claim = false;  // same_claim: ids are equal without @VALUE
         for (Verdict& verdict : figure.verdicts) {
           const std::string claim = verdict.id.substr(0, verdict.id.find('@'));
           const bool is_it =
@@ -278,7 +278,7 @@ ComputedFigure draw_figure(Store& store, const WantedFigure& wanted, const Figur
   require(".caption.txt", "Figure " + made.name + ". ", "");
   require(".lineage.json", "{\n \"analysis_version\": ", "\n \"figure\": \"" + made.name + "\"");
   const auto write = [&](const char* ending, const std::string& text) {
-    if (text.empty()) {  // deletes the file of an older figure
+    if (text.empty()) {  // an earlier drawing of the figure may have left this file
       std::filesystem::remove(base + ending);
       return;
     }

@@ -39,7 +39,7 @@ MeasureOutcome keep_measures(const Store& store, std::vector<CheckpointRecord>& 
     });
   });
   MeasureOutcome outcome;
-  std::set<std::string> seen, unmeasured;  // ids of runs; SHA-256 of checkpoints
+  std::set<std::string> seen, unmeasured;  // seen: ids of runs; unmeasured: SHA-256 of checkpoints
   for (const CheckpointRecord& record : records) {
     if (!seen.insert(record.run).second) continue;
     Stage stage = store.stage(record.run);
@@ -69,9 +69,9 @@ MeasureOutcome keep_measures(const Store& store, std::vector<CheckpointRecord>& 
     for (const FrameRun& run : runs) {
       for (const CheckpointMeasures& one : run.checkpoints) {
         for (const std::string& name : one.lacking) {
-          // The provider may need the file of an earlier checkpoint. If that file is already
-          // pruned, as in a continued run, the measure is lost, and the later file need not be
-          // kept.
+          // The provider may need an earlier checkpoint. If that checkpoint is already pruned, as
+          // can happen in a continued run, the measure cannot be computed. The file of `one` is
+          // then not kept for this measure.
           const auto* earlier = sources.earlier(one, provider(name), run.ask.checkpoint_every);
           const bool lost = earlier != nullptr && earlier->state == CheckpointState::pruned;
           if (!lost) unmeasured.insert(one.sha256);

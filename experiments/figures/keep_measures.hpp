@@ -10,9 +10,10 @@
 namespace shearcell {
 
 /// Computes and caches all measures for tables and figures, so that the files of `records` can be
-/// deleted. Measures all checkpoints of the runs, because measures of a later checkpoint may need
-/// the file of an earlier one. Measures them for each Ask::checkpoint_every that an experiment
-/// requests. Measures that need a simulation are computed only if a manifest's figure needs them.
+/// deleted. All checkpoints of the runs are measured, because a measure of a later checkpoint may
+/// need the file of an earlier one. Measures that depend on Ask::checkpoint_every are computed
+/// for each value that an experiment requests. A measure that needs a simulation is computed only
+/// if a figure of a manifest needs it.
 ///
 /// If a measure of a checkpoint could not be computed, the checkpoint is removed from `records`, so
 /// that its file is kept; the outcome gives the reason. Exception: if the measure needs an earlier

@@ -298,7 +298,7 @@ std::optional<PublishedFile> find_published(const Store& store, const std::files
   if (!content) {
     throw NotFound(
         file.string() +
-        ": this is not a readable file, or the file is larger than any file of a figure");
+        ": this is not a readable file, or the file is too large for a file of a figure");
   }
   const std::string sha256 = sha256_hex(*content);
   const std::string name = file.filename().string();

@@ -98,7 +98,7 @@ struct PublishedFile {
 /// Finds the record of the figure to which a file belongs: by the SHA-256 of the file's bytes, else
 /// by the lineage file in the same folder, else by the file's name. Returns nothing if the store
 /// has no such record. Throws NotFound if the path is not a readable regular file, or if the
-/// file is larger than any file of a figure.
+/// file is larger than StoreLimits::published_bytes.
 std::optional<PublishedFile> find_published(const Store& store, const std::filesystem::path& file);
 
 /// Reads and hashes every input checkpoint. Returns a finding for each checkpoint or run that

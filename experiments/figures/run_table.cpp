@@ -29,7 +29,7 @@ struct Row {
   const FrameRun* run = nullptr;
   const CheckpointMeasures* checkpoint = nullptr;  // null for a run that was not started
   const FrameRun* history = nullptr;  // the run with only its checkpoints at whole cycles, from
-                                      // which onsets are found; null if the row has no onsets
+                                      // which onsets are found; null if the row shows no onsets
 };
 
 struct Column : TableColumn {

@@ -40,7 +40,8 @@ ExperimentScale experiment_scale(const auto& run) {
 }
 
 /// Returns the places (variant and seed) of the stage in the newest manifest version of each
-/// experiment and scale. If this version lacks the stage, returns the place declared last.
+/// experiment and scale. For an experiment and scale whose newest version lacks the stage, returns
+/// the place declared last.
 std::vector<Membership> places_of(const Stage& stage) {
   std::vector<Membership> places;
   for (const Membership& m : stage.memberships) {
@@ -137,8 +138,8 @@ std::vector<Run> select_runs(const Store& store, const RunSelection& selection) 
       if (!passes) continue;
       selected.push_back({.place = place, .ask = ask, .stage = stage, .newest = newest});
       if (packing || !newest) continue;
-      // A manifest may have declared two runs for one seed, because its file of grains or the
-      // version of the program has changed. Only the run that was declared last counts as newest.
+      // If the file of grains or the version of the program changes, a manifest declares a second
+      // run for the same seed. Only the run that was declared last counts as newest.
       const Seed same = {experiment_scale(selected.back()), place.variant, place.seed};
       const std::size_t first = seeds.try_emplace(same, selected.size() - 1).first->second;
       if (first == selected.size() - 1) continue;

@@ -31,14 +31,14 @@ std::vector<Run> select_runs(const Store& store, const RunSelection& selection);
 struct NewestRuns {
   std::vector<Run> runs;           ///< sorted by experiment, scale, variant and seed
   std::vector<std::string> notes;  ///< runs that are left out, or shown without their last cycles
-  /// The notes on runs that the newest version of their manifest no longer lists.
+  /// Those of `notes` that report left-out runs of older manifest versions.
   std::set<std::string> notes_on_older_versions;
 };
 
 /// Returns the runs that figures and tables show. These are, for each experiment and scale, the
 /// runs of the last registered manifest version that has runs at this scale. Each seed of a variant
-/// is listed once, because counting a run twice would make errors too small. A stage that belongs
-/// to several variants is listed for each variant. Settled packings are left out.
+/// is listed once, because counting a run twice would make errors too small. If several variants
+/// share a stage, each of these variants has a run with this stage. Settled packings are left out.
 NewestRuns newest_runs(std::vector<Run> selected);
 
 /// The experiment, scale, variant and seed for which the stage was declared first. Empty if no

@@ -56,8 +56,8 @@ struct ChosenRun : Run {
 };
 
 /// Returns the runs of PackingChoice::runs. If this list is empty, returns for each experiment the
-/// last run of each variant, but at most PackingChoice::runs_per_experiment runs: those of evenly
-/// spaced variants.
+/// last run of each variant. If an experiment has more than PackingChoice::runs_per_experiment
+/// variants, uses only that many, evenly spaced in the list of variants.
 std::vector<ChosenRun> choose(const Store& store, const std::vector<std::string>& experiments,
                               const RunSelection& selection, const PackingChoice& choice) {
   std::vector<ChosenRun> chosen;

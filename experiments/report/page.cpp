@@ -326,7 +326,7 @@ json stages_step(const char* title, std::map<StageState, std::size_t>& in) {
 json workflow(const Content& content, const Experiment& experiment) {
   std::map<StageState, std::size_t> packings, runs;
   std::map<CheckpointState, std::size_t> in;
-  std::size_t left = 0;  // upper limit of the checkpoints that unfinished runs will still record
+  std::size_t left = 0;  // largest number of checkpoints that unfinished runs will still record
   for (const Stage& stage : experiment.runs) {
     for (const CheckpointHistory& c : content.runs.at(stage.id).checkpoints) ++in[c.record.state];
     const bool is_packing = stage.kind == name_of(StageKind::prepare);
@@ -347,12 +347,12 @@ json workflow(const Content& content, const Experiment& experiment) {
           step("Checkpoints", {{"done", "✓", "stored", in[CheckpointState::recorded]},
                                {"stopped", "‖", "pruned", in[CheckpointState::pruned]},
                                {"failed", "✗", "damaged", in[CheckpointState::rejected]},
-                               {"waiting", "·", "or fewer to come", left}}),
+                               {"waiting", "·", "to come (at most)", left}}),
           figures};
 }
 
 /// The columns that the page shows at first: identifiers, swept parameters, states and results of
-/// the runs. `at` is the index of a column in the experiment's table.
+/// the runs. In each item, `at` is the index of the column in the experiment's table.
 json columns_of(const Experiment& experiment) {
   const Table& table = experiment.table.table;
   json shown = json::array();

@@ -13,7 +13,7 @@
 namespace shearcell {
 
 struct ReportOptions : MeasureOptions {
-  RunSelection runs;  ///< runs to show in figures, tables and packings; a figure shows one scale
+  RunSelection runs;  ///< runs to show; each figure shows only those of one scale
   PackingChoice packings;
   bool interactive = true;    ///< false: gnuplot's drawings only, as in a build without Node
   ReadProgress encoded = {};  ///< called after each encoded packing
@@ -22,7 +22,7 @@ struct ReportOptions : MeasureOptions {
 /// Whether this program contains the front end of the report. Building the front end needs Node.
 bool has_front_end();
 
-/// A page. MeasureOutcome lists the checkpoints that figures, tables and packings leave out.
+/// A page. MeasureOutcome lists the damaged and pruned checkpoints that the page leaves out.
 struct Report : MeasureOutcome {
   /// The whole page: markup, style, data and, if the page is interactive, the front end. Texts from
   /// a store or a file are escaped.

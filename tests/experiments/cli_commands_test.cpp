@@ -292,10 +292,10 @@ TEST_F(Commands, PlanPrintsThePowerOfTheNextLook) {
                                 "claims: [{id: tiny.overlap, compare: mean_overlap_d, cycles: [1, "
                                 "1], published: {value: 0.001, source: none}, margin: 1e-6}]\n"));
   expect(0, {"run", "m.yaml", "--cycles", "1", "--seeds", "3", "-q"});
-  expect(0, {"plan", "m.yaml", "--cycles", "1"}, {"is known after `figures` has measured"});
+  expect(0, {"plan", "m.yaml", "--cycles", "1"}, {"Until `figures` has measured some runs"});
   expect(0, {"figures", "tiny", "--out", path("out")}, {"with probability 1.00"});
   expect(0, {"plan", "m.yaml", "--cycles", "1"},
-         {"uses 4 of 6 seeds ", "at or before this look with probability: tiny.overlap 1.00"});
+         {"uses 4 of 6 seeds ", "are the true values: tiny.overlap 1.00"});
 }
 
 /// A manifest may start from runs of one that is named after it.

@@ -144,7 +144,7 @@ TEST_F(Prune, KeepsTheFileOfACheckpointThatCannotBeMeasured) {
   truncate_file(path("shearcell-store/" + records[2].file));
   expect(4, {"prune", run, "--yes"},
          {"not measured: ", records[2].sha256.substr(0, 12),
-          "kept: the files of 2 checkpoints that could not be measured", "freed"});
+          "kept, because measuring failed: the files of 2 checkpoints", "freed"});
   for (const std::size_t k :
        {2U, 3U, 5U}) {  // the motion at cycle 3 is from cycle 2; 5 is the last
     EXPECT_TRUE(fs::exists(path("shearcell-store/" + records[k].file))) << k;
@@ -460,7 +460,7 @@ TEST_F(Prune, AStorePrunedByAnEarlierVersionIsNotCovered) {
     store.prune(store.prunable({}));
   }
   fs::rename(path("aside"), cache);
-  expect(0, {"verify"}, {"not covered: 20 pruned checkpoints", "nothing was changed\n"});
+  expect(0, {"verify"}, {"not checked: 20 pruned checkpoints", "nothing was changed\n"});
   expect(0, {"table"});
 }
 
