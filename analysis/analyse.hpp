@@ -59,8 +59,8 @@ struct Analysis {
 /// it, or if the cell is less than 1 d deep.
 Analysis analyse(const Checkpoint& checkpoint);
 
-/// Mean of value_of(i) over the grains i with selected[i] != 0 and a finite value; NaN if no grain
-/// has one.
+/// Mean of value_of(i) over the grains i that have selected[i] != 0 and a finite value_of(i). NaN
+/// if there are no such grains.
 double mean_over(std::span<const std::uint8_t> selected, const auto& value_of) {
   double sum = 0, count = 0;
   for (std::size_t i = 0; i < selected.size(); ++i) {

@@ -16,7 +16,8 @@ namespace {
 
 using CensoredValues = std::span<const CensoredValue>;
 
-/// Hazard of the standard normal distribution: density at z / probability of a value above z.
+/// Hazard of the standard normal distribution: the density at z divided by the probability of a
+/// value above z.
 double normal_hazard(double z) {
   if (z > 25) return z + 1 / z - 2 / (z * z * z);  // std::erfc underflows near z = 38
   return std::sqrt(2 / std::numbers::pi) * std::exp(-z * z / 2) / std::erfc(z / std::sqrt(2.0));
@@ -101,13 +102,14 @@ struct Fit {
   double sigma = 0;
 };
 
-/// Fits the mean of the values or, if `x` is given, their slope as a function of x. `t` is
+/// Fits the mean of the values or, if `x` is given, the slope b of the line a + b x. `t` is
 /// Student's quantile for the interval; t = 0 gives no interval.
 Fit fitted(CensoredValues values, std::span<const double> x, double t,
            Distribution distribution = normal) {
   const auto n = static_cast<double>(values.size());
   const double slope = x.empty() ? 0 : 1;
-  Eigen::VectorXd y(std::ssize(values)), weight(y.size());  // mean of y: value * weight + constant
+  // Model: the mean of y[k] is value * weight[k] + constant. The constant is 0 if `x` is empty.
+  Eigen::VectorXd y(std::ssize(values)), weight(y.size());
   std::ranges::transform(values, y.begin(), &CensoredValue::value);
   std::ranges::copy(x, weight.begin());
   const auto centred = [n](Eigen::VectorXd& numbers) {  // shifts and scales to mean 0, variance 1
@@ -155,8 +157,8 @@ std::vector<double> plain(CensoredValues values) {
   return numbers;
 }
 
-/// Residuals (y - mean) / sigma, shifted so that they have zero mean. For a censored value, the
-/// expected residual of a true value above the limit is used.
+/// Residuals (y - mean) / sigma, shifted so that they have zero mean. A censored value has
+/// the expected residual of a true value above the censored value.
 Eigen::VectorXd residuals(CensoredValues values, const Fit& fit) {
   Eigen::VectorXd found(std::ssize(values));
   std::ranges::transform(values, found.begin(), [&fit](const CensoredValue& one) {

@@ -93,7 +93,7 @@ struct Series {
   bool large = false;        ///< larger points, which stay visible around smaller points
   std::string variant = {};  ///< name of the curve's variant in the table; "": no variant
   std::vector<ChartPoint> points = {};
-  /// Number of independent packings in the curve; 0 if each point is a mean over other runs.
+  /// Independent packings in the curve; 0 if not given, or if each run contributes to one point.
   std::size_t runs = 0;
   double shift = 0;  ///< added to x in the drawing, so that points with equal x stay visible
 };
@@ -132,7 +132,7 @@ struct TextTable {
   Text note = {};
 };
 
-/// One panel: its data, and either a chart or a text. A table without chart and text is not drawn.
+/// One panel: its data, and either a chart or a text. A table with neither is not drawn.
 struct Table {
   std::string name = {};  ///< "S2a": letters, digits, '-' and '_'
   std::vector<TableColumn> columns = {};
@@ -162,9 +162,9 @@ nlohmann::ordered_json to_json(const Table& table);
 std::vector<ChartPoint> points_of(const Series& series);
 
 /// Adds the number of runs per point, such as "(3 to 5 runs)", to the title of each series in which
-/// this number varies or is less than Series::runs. Readers need this number: if other runs
-/// contribute to the next point, the mean can change although no run does. If all series have the
-/// same numbers, the caption gives them once.
+/// this number varies or is less than Series::runs. Readers need this number: if different runs
+/// contribute to two points, the means can differ although the value of each run is constant. If
+/// all series have the same numbers, the caption gives them once.
 void name_run_counts(Table& table);
 
 /// Number of significant digits for values from `low` to `high`: 9, or more (up to 17) if needed to

@@ -124,10 +124,11 @@ Verdict decided_by(const ClaimSpec& claim, const Claim& stated, RunGroup a, RunG
 
 /// A look (interim analysis) at n seeds uses the runs of the first n seeds that both sides have. It
 /// is made when all these runs have ended. If no looks are planned, there is one look, at all seeds
-/// that at least one side has. Returns the verdict of the first look that decides the claim. Until
-/// then the verdict is undecided, and its numbers use the seeds before the first seed that still
-/// has a planned run. Seeds that no look includes are used only in the note. `planned`: the two
-/// sides with the planned runs (Frame::pending).
+/// that at least one side has. Returns the verdict of the first look that decides the claim. If no
+/// look decides it, the verdict is undecided, and its numbers use the seeds before the first seed
+/// that still has a planned run. If no seed is before that seed, the numbers use all seeds. Seeds
+/// that no look includes are used only in the note. `planned`: the two sides with the planned runs
+/// (Frame::pending).
 Verdict at_looks(const ClaimSpec& claim, Claim stated, const ClaimSides& sides,
                  const ClaimSides& planned, const Frame& frame) {
   const auto seeds_of = [](std::initializer_list<RunGroup> groups) {
@@ -267,8 +268,8 @@ std::string remedy_for(RunGroup side) {
   return values.empty() ? "" : fmt::format(" Add `{}` or other values.", fmt::join(values, ", "));
 }
 
-/// For each run of side `k`: its swept values, without the keys that select this side. A claim may
-/// average over these values if they are the same on both sides.
+/// The set of swept values of the runs of side `k`, without the keys that select this side. A claim
+/// may average over the variants of each side if both sides have the same set.
 std::set<nlohmann::json> others_of(const ClaimSpec& claim, const ClaimSides& sides, std::size_t k) {
   std::set<nlohmann::json> others;
   for (const FrameRun* run : sides.runs.at(k)) {

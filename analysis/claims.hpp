@@ -35,7 +35,7 @@ struct ClaimSpec {
   std::optional<std::array<double, 2>> phi = {};
   std::optional<double> reaches = {};
   std::string against = {};
-  /// Both sides use only runs that have these parameters (has_parameters()).
+  /// The claim uses only runs whose parameters match this object; see has_parameters().
   nlohmann::json where = nlohmann::json::object();
   /// A parameter. Each of its values gives a claim with an id like "S5a.onset@amplitude_rad=0.05".
   std::string for_each = {};
@@ -44,7 +44,8 @@ struct ClaimSpec {
   std::array<nlohmann::json, 2> between = {nlohmann::json::object(), nlohmann::json::object()};
   std::optional<PublishedSpec> published = {};
   /// Tolerance of the claim, in units of the measure. For waiting times it is the tolerance of
-  /// log2(ratio of a to b). A margin of 0 makes the published number an upper or lower bound.
+  /// log2(ratio of a to b). A claim with a margin of 0 and a published number states that the
+  /// measure is above (Relation::higher) or below (Relation::lower) this number.
   double margin = 0;
   bool relative = false;  ///< the margin limits the relative difference
   /// The claim as a sentence. If empty, the sentence follows from the keys. With `for_each:
@@ -53,14 +54,14 @@ struct ClaimSpec {
   Relation is = Relation::same;
   bool optional = false;               ///< true: no verdict if a group has no runs
   std::string cannot_be_decided = {};  ///< why no number of runs can decide the claim, or ""
-  /// True if a shipped manifest defines the claim, and the user's manifest lists its figure. If
-  /// problems_of_sides() finds a problem in such a claim, the claim gets a verdict without runs
-  /// (undecided). In any other claim, such a problem is an error.
+  /// True if a shipped manifest defines the claim, and the user's manifest lists the claim's
+  /// figure. If problems_of_sides() finds a problem in such a claim, the verdict is undecided and
+  /// uses no runs. In any other claim, such a problem is an error.
   bool listed = false;
 };
 
-/// Whether the claim has only one group of runs: it has a published number, or Estimator::one_side
-/// is true.
+/// Whether the claim has only one group of runs. True if the claim has a published number, or if
+/// Estimator::one_side is true.
 bool has_one_side(const ClaimSpec& claim);
 
 /// The figure of the claim: `figure` if given, otherwise the id up to its first dot.
@@ -83,7 +84,7 @@ std::vector<ClaimSpec> each_of(const ClaimSpec& claim, std::span<const FrameRun>
 Claim stated(const ClaimSpec& claim, const std::array<std::string, 2>& sides);
 
 /// One sentence for each reason why the sides cannot be compared. `planned`: whether the sides hold
-/// planned runs. If so, a side without runs is one of the reasons.
+/// planned runs. A side without runs is such a reason only if `planned` is true.
 std::vector<std::string> problems_of_sides(const ClaimSpec& claim, const ClaimSides& sides,
                                            bool planned);
 

@@ -17,11 +17,12 @@ inline constexpr std::int32_t least_descendant = 3;
 inline constexpr std::int32_t grown_size = 60;
 /// A crystallite is gone after this number of consecutive cycles without a descendant. [choice]
 inline constexpr std::size_t cycles_gone = 2;
-/// Lower limits of the size bins of followed crystallites: 3 to 4, 5 to 7, 8 to 12 and 13 to 20
-/// grains. In each state at most one crystallite of each bin is followed. [choice]
+/// Limits of the size bins of followed crystallites: 3 to 4, 5 to 7, 8 to 12 and 13 to 20 grains.
+/// The last number is above the last bin. In each state at most one crystallite of each bin is
+/// followed. [choice]
 inline constexpr std::int32_t followed_bins[] = {3, 5, 8, 13, 21};
-/// Descendants are recognized by the grains of the descendants in this number of earlier cycles, as
-/// followed() describes. [choice]
+/// Number of earlier cycles whose descendants are used to recognize a new descendant, as described
+/// at followed(). [choice]
 inline constexpr std::size_t remembered_cycles = 3;
 
 /// Labels of the crystallites to follow: in each size bin, the one that has the lowest grain id.
@@ -37,13 +38,15 @@ struct Followed {
 
 /// Follows crystallite `label` of maps[0] through the later maps. There is one map for each cycle.
 ///
-/// The first descendant is the crystallite itself. Remembered grains are all grains of descendants
-/// from the last `remembered_cycles` cycles with a descendant. A later crystallite C is a
-/// descendant if it has at least `least_descendant` grains, has a remembered grain, and does not
-/// continue a foreign crystallite. A foreign crystallite X existed in the previous cycle and is no
-/// descendant. C continues X if C has more grains of X than remembered grains. The followed
-/// crystallite has merged if two conditions hold: there is no descendant, and at least half of the
-/// grains of the last descendants are in one crystallite that continues a foreign crystallite.
+/// The first descendant is the crystallite itself. A grain is remembered if it belonged to a
+/// descendant in one of the last `remembered_cycles` cycles; cycles without a descendant are not
+/// counted. A foreign crystallite is a crystallite of the previous cycle that is not a descendant.
+/// A crystallite C of the current cycle continues a foreign crystallite X if C has more grains of X
+/// than remembered grains; a grain that is remembered does not count as a grain of X. C is a
+/// descendant if it has at least `least_descendant` grains, has a remembered grain, and continues
+/// no foreign crystallite. The followed crystallite has merged if two conditions hold: there is no
+/// descendant, and at least half of the grains of the last descendants are in one crystallite that
+/// continues a foreign crystallite.
 Followed followed(std::span<const CrystalliteMap* const> maps, std::int32_t label);
 
 /// Outcome for a followed crystallite. `undecided`: the clone ends before the outcome is known.

@@ -91,8 +91,8 @@ int longest_chain(const Bonds& bonds, std::uint32_t members) {
 }
 
 // Indices of Honeycutt and Andersen, J. Phys. Chem. 91, 4950 (1987), for a grain and one neighbour:
-// number of common neighbours, of bonds between these, and of bonds in their longest chain. The
-// three digits form one number, such as 421.
+// number of common neighbours, number of bonds between common neighbours, and number of bonds in
+// the longest chain of these bonds. The three digits form one number, such as 421.
 int signature(const Bonds& bonds, std::size_t neighbour) {
   const std::uint32_t common = bonds[neighbour];
   return 100 * std::popcount(common) + 10 * bonds_among(bonds, common) +
@@ -161,14 +161,15 @@ std::vector<Provider> lattice_providers() {
   };
   return {{.name = "lattices",
            .parameters = interior_criteria(),
-           .measures = {{"cna_crystalline_percent", "%",
-                         "FCC and HCP grains among interior grains, by common neighbour analysis"},
-                        {"cna_fcc_percent", "%",
-                         "FCC grains among interior grains, by common neighbour analysis"},
-                        {"cna_hcp_percent", "%",
-                         "HCP grains among interior grains, by common neighbour analysis"},
-                        {"cna_bcc_percent", "%",
-                         "BCC grains among interior grains, by common neighbour analysis"}},
+           .measures =
+               {{"cna_crystalline_percent", "%",
+                 "percentage of interior grains that are FCC or HCP, by common neighbour analysis"},
+                {"cna_fcc_percent", "%",
+                 "percentage of interior grains that are FCC, by common neighbour analysis"},
+                {"cna_hcp_percent", "%",
+                 "percentage of interior grains that are HCP, by common neighbour analysis"},
+                {"cna_bcc_percent", "%",
+                 "percentage of interior grains that are BCC, by common neighbour analysis"}},
            .compute = compute},
           {.name = "grain_lattices",
            .parameters = nlohmann::json::object(),

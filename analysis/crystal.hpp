@@ -36,8 +36,8 @@ Structure structure(double phi_local, double q6, double least_phi_local = crysta
 
 /// Finds the connected sets of grains with crystalline[i] != 0. Two such grains are connected if
 /// they share a Voronoi face of at least `least_face` [d^2]. A single grain can be a crystallite.
-/// Returns the number of each grain's crystallite, -1 for none. Crystallites are ordered by lowest
-/// grain id.
+/// Returns for each grain the index of its crystallite, or -1 if the grain is in no crystallite.
+/// Crystallites are ordered by lowest grain id.
 std::vector<std::int32_t> crystallites(const VoronoiDiagram& diagram,
                                        std::span<const std::uint8_t> crystalline,
                                        double least_face);
@@ -46,7 +46,7 @@ std::vector<std::int32_t> crystallites(const VoronoiDiagram& diagram,
 /// that crystallites can be followed from checkpoint to checkpoint.
 struct CrystalliteMap {
   std::vector<std::int32_t> grain = {};      ///< ids of the crystalline interior grains, ascending
-  std::vector<std::int32_t> label = {};      ///< number of the crystallite of each entry of `grain`
+  std::vector<std::int32_t> label = {};      ///< index of the crystallite of each entry of `grain`
   std::vector<std::int32_t> size = {};       ///< grains in each crystallite
   std::vector<Eigen::Vector3d> centre = {};  ///< centre of mass of each crystallite [d]
   double width = 0;                          ///< width of the cell [d]
@@ -58,7 +58,7 @@ struct CrystalliteMap {
   }
 };
 
-/// `crystallite`: the number of each grain's crystallite, from crystallites(). Centres refer to the
+/// `crystallite`: the index of each grain's crystallite, from crystallites(). Centres refer to the
 /// untilted cell: the displacement of the side walls at the height of each grain is subtracted from
 /// its x, so that 0 <= x <= width. z is the circular mean over the period, in [0, depth). It is
 /// accurate for crystallites that are small compared with the period.

@@ -33,7 +33,7 @@ struct Estimator {
   bool over_variants = false;      ///< a group of runs may contain several variants
   bool one_side = false;           ///< its claims have one group, even without a published number
   bool compares_variants = false;  ///< the group must contain several variants
-  /// The number with which a claim with one group is compared if it has no published number.
+  /// The reference number of claims that have one group and no published number.
   std::string_view reference = "0";
   /// Returns a Scalar, which computes one number per run. The estimate is the mean of these numbers
   /// or, for two groups, the difference of their means. If this pointer is null, `decide` gives the
@@ -64,8 +64,8 @@ bool compares_waits(const ClaimSpec& claim);
 /// pairs. Pairs are compared by Student's t, and runs without a partner are left out. If there are
 /// no pairs, the interval is Welch's. Runs that end before an event are censored (censored.hpp). A
 /// verdict needs least_runs runs or pairs. In each group, at least three quarters of the runs must
-/// have a number from `scalar` and, if there are pairs, a partner, because missing runs may bias
-/// the verdict. [choice]
+/// have a number from `scalar`. If there are pairs, at least three quarters of the packings of each
+/// group must be in a pair. Otherwise the runs that are left out could bias the verdict. [choice]
 Verdict compare(const Claim& claim, const Scalar& scalar, RunGroup a, RunGroup b);
 
 /// Decides the claim from the mean over runs minus the published number.

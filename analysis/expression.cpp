@@ -29,8 +29,8 @@ bool begins_name(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
 }
 
-/// Splits a text into numbers, names and other single characters, without spaces. A text that is
-/// too long is truncated, because std::regex recurses for each character.
+/// Splits a text into numbers, names and, for the rest, single characters. Spaces are dropped. A
+/// text that is too long is truncated, because std::regex recurses for each character.
 std::vector<std::string> tokens_of(std::string_view text) {
   text = text.substr(0, longest_expression + 1);
   static const std::regex token("[0-9.][0-9.]*(?:[eE][-+]?[0-9]*)?|[A-Za-z_][A-Za-z_0-9]*|[^ ]");

@@ -20,8 +20,8 @@ std::vector<std::string> names_in(std::string_view text);
 std::string expression_syntax();
 
 /// Returns why the text cannot be evaluated, such as "is not an expression: ..."; "" if it can be
-/// evaluated. Whether the names exist is not checked. A text that does not follow
-/// expression_syntax() or has more than 200 bytes is an error.
+/// evaluated. The text must follow expression_syntax() and have at most 200 bytes. Whether the
+/// names exist is not checked.
 std::string wrong_in_expression(const std::string& text);
 
 using ValueOf = std::function<double(const std::string& name)>;

@@ -53,7 +53,8 @@ bool has_parameters(const FrameRun& run, const nlohmann::json& where) {
 std::vector<const FrameRun*> all_runs_with(const nlohmann::json& where,
                                            std::span<const FrameRun> runs) {
   std::vector<const FrameRun*> found;
-  std::map<std::string_view, std::string_view> experiments;  // by stage id: the first experiment
+  // For each stage id, the experiment of the first matching run.
+  std::map<std::string_view, std::string_view> experiments;
   for (const FrameRun& run : runs) {
     if (!has_parameters(run, where)) continue;
     const std::string_view experiment = run.place.experiment;

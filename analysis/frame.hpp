@@ -34,7 +34,7 @@ struct FrameRun : Run {
   std::string packing = {};
   nlohmann::json parameters = {};  ///< parameters of all stages of the run, by manifest key
   std::vector<CheckpointMeasures> checkpoints = {};  ///< in the order of steps
-  double end = 0;  ///< last cycle of the run so far, even if the frame lacks its checkpoint
+  double end = 0;  ///< last cycle of the run so far; the frame may lack a checkpoint at this cycle
   /// Computing time of the run up to `end`; NaN unless the results of cost_provider were requested.
   double core_time_s = std::numeric_limits<double>::quiet_NaN();
 };
@@ -60,8 +60,8 @@ struct Frame {
   Frame(std::span<const FrameRun> all) : runs(all.begin(), all.end()) {}  // NOLINT
 };
 
-/// Why a run has no number: there is no checkpoint at the cycle, the run ends before the cycle or
-/// begins after it, or the number is undefined, such as phi without interior grains.
+/// Why a number is missing for a run: there is no checkpoint at the cycle, the run ends before the
+/// cycle or begins after it, or the number is undefined, such as phi without interior grains.
 enum class Missing { nothing, checkpoint, too_short, too_late, undefined };
 template <>
 inline constexpr auto kNames<Missing> = names_in_order<Missing>("", "no checkpoint", "ends before",
@@ -126,8 +126,8 @@ bool has_parameters(const FrameRun& run, const nlohmann::json& where);
 /// FrameRun of the first of these experiments is returned.
 std::vector<const FrameRun*> all_runs_with(const nlohmann::json& where,
                                            std::span<const FrameRun> runs);
-/// As all_runs_with(). But if the runs belong to several variants, and to exactly one variant
-/// without the runs that `run --engine` added, these added runs are left out.
+/// As all_runs_with(), except that runs added by `run --engine` are left out if the remaining runs
+/// belong to exactly one variant.
 std::vector<const FrameRun*> runs_with(const nlohmann::json& where, std::span<const FrameRun> runs);
 
 /// Whether a value matches `wanted`, which is a value, a list of values or a range.
@@ -146,13 +146,14 @@ std::string shared_name(RunGroup runs);
 /// Id of the packing from which the run started; without a packing, id of the run. Runs with the
 /// same packing are not independent.
 const std::string& packing_of(const FrameRun& run);
-/// The runs of each packing (packing_of()). by_packing() keeps the order of the runs in `group`.
+/// The runs of each packing (packing_of()).
 using PackingGroups = nlohmann::ordered_map<std::string, std::vector<const FrameRun*>>;
+/// Groups runs by packing. Packings, and the runs of each packing, keep their order in `group`.
 PackingGroups by_packing(RunGroup group);
 /// Returns, for each packing, the mean of the values of its runs. `values` has one value for each
 /// run. Values that are not finite are left out. Packings are in the order of the runs.
 std::vector<double> over_packings(RunGroup runs, std::span<const double> values);
-/// Mean over runs of the measure at the first checkpoint of each run; NaN without checkpoints.
+/// The measure at the first checkpoint of each run, averaged over runs; NaN without checkpoints.
 double at_start(RunGroup runs, const std::string& measure);
 
 /// Writes parameters and their values as a text such as "fluid=still, walls=rough". A list is

@@ -25,13 +25,15 @@ constexpr std::string_view style =
     "set ytics in mirror scale 0.9,0.5\n"
     "set mxtics 2\n"
     "set mytics 2\n"
-    // Ranges end a little outside the data, not at the next tick, so that no point or bar is cut.
+    // Ranges do not extend to the next tick. They end a little outside the data, so that no point
+    // or bar is cut.
     "set autoscale noextend\n"
     // The legend is above the frame, since inside the frame it could hide data.
     "set key above horizontal center noautotitle Left reverse samplen 1.2 spacing 0.9\n";
 
-/// A single-quoted gnuplot string. Each quote in it is doubled. gnuplot misreads a text that begins
-/// with a quote or contains `''`. markup() avoids both: it puts a `\` before each quote.
+/// A single-quoted gnuplot string, in which each quote of `text` is doubled. gnuplot misreads this
+/// string if `text` begins with a quote or contains `''`. markup() avoids both: it puts a `\`
+/// before each quote.
 std::string literal(const std::string& text) {
   std::string inside;
   for (const char c : text) {
@@ -167,8 +169,8 @@ class Script {
     if (!chart_.letter.empty()) {
       add("set label '({})' at screen 0.015, screen 0.96 left front\n", chart_.letter);
     }
-    // gnuplot overestimates the width of legend titles by about a quarter. It would therefore use
-    // too few columns.
+    // gnuplot overestimates the width of legend titles by about a quarter. Without the correction
+    // `width`, it would use too few columns.
     const Layout layout = layout_of(chart_);
     add("set key maxcols {} width -{}\n", layout.columns, layout.longest / 4);
     add("set xlabel {}\nset ylabel {}\n", literal(label_of(chart_.x)), literal(label_of(chart_.y)));

@@ -14,7 +14,7 @@ using Points = std::span<const std::pair<double, double>>;  // cycle, value
 
 /// The value of `statistic` for each run. It is defined if the run has a checkpoint at each cycle
 /// of the range or, if `ends` is true, at the first and the last cycle. `name` and `cycles`
-/// describe the value and its cycles in sentences.
+/// become Scalar::name and Scalar::reach.
 Scalar over_cycles(const ClaimSpec& claim, std::string name, std::string cycles,
                    double (*statistic)(Points), bool ends = false) {
   const auto first = static_cast<double>(claim.cycles->at(0));

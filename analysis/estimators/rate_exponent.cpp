@@ -14,7 +14,7 @@ std::string words_of_exponent(const ClaimSpec& claim) {
 }
 
 /// Compares the exponent with the published exponent, or with 0 if the claim has no published
-/// exponent. Throws UsageError if `against` is not the number of grains of a region.
+/// exponent. Throws UsageError if `against` is neither interior_grains nor core_grains.
 Verdict decide_exponent(const ClaimSpec& claim, const Claim& stated, RunGroup runs, RunGroup) {
   const Region region = claim.against == grains_of(Region::core) ? Region::core : Region::interior;
   if (claim.against != grains_of(region)) {

@@ -51,8 +51,8 @@ Verdict decide_slope(const ClaimSpec& claim, const Claim& stated, RunGroup runs,
 const Estimator slope_against = {
     .name = "slope",
     .meaning =
-        "slope of a line through one point per run: x is the run's first value of `against`, "
-        "y is the run's value of `compare`",
+        "slope of a line fitted to all runs; each run gives one point: x is its first value of "
+        "`against`, y is its value of `compare`",
     .key = "against",
     .of_run = true,
     .over_variants = true,

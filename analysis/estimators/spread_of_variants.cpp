@@ -47,7 +47,9 @@ Verdict decide_spread(const ClaimSpec& claim, const Claim& stated, RunGroup runs
                          "{:.3g} % confidence limit",
                          found->f, 50 * (1 + stated.level)));
   }
-  if (!estimate) add_note(note, "at least two variants, one of them with two values, are needed");
+  if (!estimate) {
+    add_note(note, "at least two variants are needed, and one of them needs two values or more");
+  }
   return decide(stated, words_of_spread(claim), estimate,
                 with_number / std::max<std::size_t>(1, groups.size()), std::move(note),
                 std::move(entered), Counted::runs_per_variant);

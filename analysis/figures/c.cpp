@@ -58,7 +58,7 @@ std::optional<Estimate> critical_size_without(std::size_t GrowthCount::*fate,
 
 /// Growth of the crystallites over a fixed number of cycles.
 struct GrowthAfter {
-  std::vector<GrowthBySize> runs = {};  ///< counts of each packing
+  std::vector<GrowthBySize> runs = {};  ///< one entry for each packing
   GrowthCurve curve{runs};
   std::optional<Estimate> critical = curve.critical_size();
 };
@@ -304,8 +304,9 @@ Verdict critical_size_is_published(const AmplitudeGrowth& one) {
   return verdict;
 }
 
-/// Compares the critical sizes of the largest and the smallest amplitude that have a critical size
-/// after cycles_compared cycles. Runs of different amplitudes are treated as independent.
+/// Considers the amplitudes that have a critical size after cycles_compared cycles. Compares the
+/// critical sizes at the largest and at the smallest of these amplitudes. Runs of different
+/// amplitudes are treated as independent.
 Verdict critical_size_grows(std::span<const AmplitudeGrowth> all) {
   std::vector<const AmplitudeGrowth*> sized;
   std::string note = fmt::format("crystallites followed over {} cycles", cycles_compared);

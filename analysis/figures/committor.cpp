@@ -19,8 +19,8 @@
 namespace shearcell {
 namespace {
 
-/// A crystallite counts as gone after this number of cycles without a descendant. Verdicts use
-/// cycles_gone. The other numbers show how much the results depend on this choice.
+/// Numbers of cycles without a descendant after which a crystallite counts as gone. Verdicts use
+/// cycles_gone. The other two numbers show how much the results depend on this choice.
 constexpr std::array<std::size_t, 3> cycles_without = {1, cycles_gone, 3};
 constexpr std::size_t chosen_rule = 1;  ///< index of cycles_gone
 /// Limit of the fraction of controls (see Subject) that grow. Above it, a critical size is defined
@@ -47,7 +47,7 @@ const std::array fate_columns = {"grown", "gone", "merged", "undecided", "revive
 using FatesByRule = std::array<Fates, cycles_without.size()>;
 
 /// A crystallite of a recorded state, and its outcomes in the clones of this state. Size 0 means a
-/// control: a state without a crystallite of at least least_descendant grains.
+/// control: a state in which all crystallites have fewer than least_descendant grains.
 struct Subject {
   const FrameRun* run;  ///< the first clone
   std::int32_t size;
@@ -71,8 +71,8 @@ std::vector<const CrystalliteMap*> maps_of(const FrameRun& run) {
   return maps;
 }
 
-/// Adds a Subject with its outcomes in the clones of a state: one for each followed crystallite or,
-/// if the state is a control, one for the state.
+/// Adds the subjects of a state, with their outcomes in its clones. The subjects are the followed
+/// crystallites or, if the state is a control, the state itself.
 void add_state(RunGroup clones, Amplitude& to) {
   std::vector<std::vector<const CrystalliteMap*>> maps;  // of each clone
   for (const FrameRun* clone : clones) maps.push_back(maps_of(*clone));
@@ -134,7 +134,7 @@ std::optional<double> grown_share(const Fates& fates) {
   return static_cast<double>(fates.of(Fate::grown)) / static_cast<double>(decided);
 }
 
-/// Among the clones of controls, the fraction in which a crystallite grew. Empty without controls.
+/// Fraction of the clones of control states in which a crystallite grew; empty without such states.
 std::optional<double> background(const Amplitude& one) {
   return grown_share(sum_of(one.controls, chosen_rule));
 }
@@ -169,9 +169,8 @@ std::string why_undefined(const Amplitude& one) {
       grown_share(sum_of(one.crystallites, chosen_rule, followed_bins[0], followed_bins[1]));
   if (*q <= rare || !smallest || *smallest > *q) return "";
   return fmt::format(
-      "no critical size is defined: in a fraction {:.2g} of the controls a crystallite of {} "
-      "grains "
-      "forms, but only a fraction {:.2g} of the crystallites of {} to {} grains grow",
+      "no critical size is defined: a fraction {:.2g} of the controls form a crystallite of {} "
+      "grains, but only a fraction {:.2g} of the crystallites of {} to {} grains grow",
       *q, grown_size, *smallest, followed_bins[0], followed_bins[1] - 1);
 }
 

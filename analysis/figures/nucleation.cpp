@@ -35,9 +35,10 @@ std::string name_of(const Group& group) {
   return fmt::format("A={} N={}", group.first, group.second);
 }
 
-/// A curve without points for each group. If there are several amplitudes, each amplitude has its
-/// own colour, which is the same in all figures. Otherwise each cell size has its own colour. With
-/// Join::none, the points of the groups in a bin of phi are shifted so that they do not overlap.
+/// For each group, a curve that has no points yet. If there are several amplitudes, each amplitude
+/// has its own colour, which is the same in all figures. Otherwise each cell size has its own
+/// colour. With Join::none, the points of the groups in a bin of phi are shifted so that they do
+/// not overlap.
 std::map<Group, Series> series_by(const Groups& groups, Join join) {
   std::map<Group, Series> series;
   std::set<double> amplitudes;

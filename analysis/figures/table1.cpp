@@ -22,7 +22,7 @@ constexpr double pi = std::numbers::pi;
 struct Parameter {
   const char* name;          ///< ends in the unit
   const char* heading;       ///< symbol and unit; may contain formulas
-  double published;          ///< value in all simulations, unless a section varies it
+  double published;          ///< value in all simulations that do not vary the parameter
   const char* value = name;  ///< expression of manifest keys; it varies if one of them is swept
 };
 
