@@ -168,7 +168,7 @@ void print(const VerifyReport& report, const MeasureCheck& measures) {
         measures.absent);
   }
   if (measures.not_covered > 0) {
-    print_text("not checked: {}, because the log has no hashes of the measures\n",
+    print_text("not covered: {}, because the log has no hashes of the measures\n",
                counted(measures.not_covered, "pruned checkpoint"));
   }
   if (report.ok()) {

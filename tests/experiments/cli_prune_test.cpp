@@ -460,7 +460,7 @@ TEST_F(Prune, AStorePrunedByAnEarlierVersionIsNotCovered) {
     store.prune(store.prunable({}));
   }
   fs::rename(path("aside"), cache);
-  expect(0, {"verify"}, {"not checked: 20 pruned checkpoints", "nothing was changed\n"});
+  expect(0, {"verify"}, {"not covered: 20 pruned checkpoints", "nothing was changed\n"});
   expect(0, {"table"});
 }
 
