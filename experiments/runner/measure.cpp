@@ -298,7 +298,7 @@ void MeasureSources::read_run(const std::string& run) {
     auto pruned = std::get<events::CheckpointPruned>(events::decode(event));
     if (pruned.measures.empty()) continue;
     Digests& all = entry->second.digests[pruned.checkpoint.sha256];
-    pruned.measures.merge(all);  // of two digests of one result, keeps the later one
+    pruned.measures.merge(all);  // a later event replaces a digest
     all = std::move(pruned.measures);
   }
   if (!entry->second.facts.drive) return;
