@@ -15,8 +15,8 @@ using BySize = Eigen::Array<double, GrowthCurve::largest, 1>;
 using FromSize = Eigen::Matrix<double, GrowthCurve::largest, GrowthCurve::largest>;
 
 /// Columns of GrowthCurve::Sums: moments 0 to 2 of the number of crystallites, moments 0 and 1 of
-/// the excess (growing minus shrinking crystallites), and the excess summed over the sizes from
-/// that of the row upwards.
+/// the excess (growing minus shrinking crystallites), and the sum of the excess over the size of
+/// the row and all larger sizes.
 enum Column : Eigen::Index { all_0, all_1, all_2, excess_0, excess_1, tail };
 
 double log_size(Eigen::Index k) {
@@ -51,8 +51,8 @@ auto smooth(const Sums& sums) {
 }
 
 /// The size that GrowthCurve::critical_size() defines; infinity if there is none. Minus infinity if
-/// delta_rho > 0 at size 1 and the excess summed over all sizes is positive and at least as large
-/// as the excess summed over the sizes above any rise of delta_rho through zero.
+/// three conditions hold: delta_rho > 0 at size 1; the excess summed over all sizes is positive; no
+/// rise of delta_rho through zero has a larger sum of the excess above it.
 template <class Sums>
 double rise(const Sums& sums) {
   const auto delta = smooth(sums);
@@ -114,14 +114,15 @@ void follow(const CrystalliteMap& now, const CrystalliteMap& later, GrowthBySize
     if (l == later.grain.size()) break;
     if (later.grain[l] == now.grain[k]) ++shared[{now.label[k], later.label[l]}];
   }
-  struct Outcome {                                   // of a crystallite of `now`
-    std::int32_t larger = 0, same = 0, smaller = 0;  // grains, by size of later crystallite
-    std::int32_t most = 0;                           // grains shared with crystallite `end`
-    std::size_t end = 0;                             // later crystallite that shares most grains
+  struct Outcome {  // where the grains of one crystallite of `now` are in `later`
+    std::int32_t larger = 0, same = 0, smaller = 0;  // grains, by size of the later crystallite
+    std::int32_t most = 0;                           // number of these grains in `end`
+    std::size_t end = 0;  // the later crystallite with the largest number of these grains
   };
   std::vector<Outcome> fates(now.size.size());
-  struct Origin {                     // of a crystallite of `later`
-    std::int32_t most = 0, size = 0;  // grains shared with the main earlier crystallite; its size
+  // The crystallite of `now` that contributed the most grains to one crystallite of `later`.
+  struct Origin {
+    std::int32_t most = 0, size = 0;  // number of these grains; size of the crystallite
   };
   std::vector<Origin> origins(later.size.size());
   for (const auto& [labels, grains] : shared) {

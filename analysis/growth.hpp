@@ -15,15 +15,19 @@
 
 namespace shearcell {
 
-/// What happened to the crystallites of one size. A crystallite is counted at most once. It is not
-/// counted if it keeps its size: most of its grains are later in a crystallite of the same size.
+/// How many crystallites of one size grew, shrank, ... A crystallite is counted in at most one
+/// member. It is not counted, for example, if more than half of its grains are later in a
+/// crystallite of the same size.
 struct GrowthCount {
-  std::size_t grew = 0;  ///< more than half of its grains are later in larger crystallites
-  /// Like `grew`, but another crystallite, which was larger, contributed the most grains to the
-  /// later crystallite.
+  /// Crystallites with more than half of their grains later in larger crystallites.
+  std::size_t grew = 0;
+  /// Crystallites that would count in `grew`, except that another, larger crystallite contributed
+  /// the most grains to the later crystallite.
   std::size_t absorbed = 0;
-  std::size_t shrank = 0;  ///< more than half of its grains are later in smaller crystallites
-  /// More than half of its grains are later in smaller crystallites or in none; not in `shrank`.
+  /// Crystallites with more than half of their grains later in smaller crystallites.
+  std::size_t shrank = 0;
+  /// Crystallites with more than half of their grains later in smaller crystallites or in no
+  /// crystallite, unless they count in `shrank`.
   std::size_t vanished = 0;
 
   std::size_t larger() const { return grew + absorbed; }     ///< "growing" in the supplement
@@ -47,9 +51,9 @@ struct GrowthRate {
   double size = 0;  ///< geometric mean size of the crystallites in the bin [grains]
   GrowthCount count;
   double delta = 0;
-  /// The larger of two standard errors: the bootstrap error over runs, and the error
-  /// 2 sqrt((larger + 1) (smaller + 1) / (n + 3)) / (n + 2) for independent crystallites, where
-  /// n = larger + smaller.
+  /// The maximum of two standard errors: the bootstrap error over runs, and the error for
+  /// independent crystallites, 2 sqrt((a + 1) (b + 1) / (n + 3)) / (n + 2). Here a is
+  /// count.larger(), b is count.smaller(), and n = a + b.
   double delta_error = 0;
 };
 
@@ -78,21 +82,23 @@ class GrowthCurve {
   double delta_rho(std::int32_t size) const;
   std::optional<double> delta_rho_error(std::int32_t size) const;  ///< bootstrap over runs
 
-  /// The size at which delta_rho rises through zero. If there are several such sizes, it is the one
-  /// above which the excess of growing over shrinking crystallites is largest. Empty for fewer than
-  /// least_bootstrap_runs runs, or if there is no such size. The interval comes from the bootstrap.
-  /// An end of the interval is infinite if too many bootstrap selections have no such size.
+  /// The size at which delta_rho rises through zero. If there are several such sizes, the excess
+  /// (growing minus shrinking crystallites) is summed over the sizes above each of them, and the
+  /// one with the largest sum is returned. Empty for fewer than least_bootstrap_runs runs, or if
+  /// there is no such size with a positive sum. The interval comes from the bootstrap. An end of
+  /// the interval is infinite if too many bootstrap selections have no such size.
   std::optional<Estimate> critical_size() const;
-  /// The size s at which the summed excess is largest: the number of growing minus the number of
-  /// shrinking crystallites, both with at least s grains. At s the monotone (isotonic) fit of the
-  /// unsmoothed delta_rho crosses zero (M. Ayer et al., Ann. Math. Stat. 26, 641 (1955)). This
-  /// checks critical_size(), but is less precise.
+  /// The size s with the largest excess (growing minus shrinking crystallites), summed over all
+  /// crystallites of at least s grains. At s the monotone (isotonic) fit of the unsmoothed
+  /// delta_rho crosses zero (M. Ayer et al., Ann. Math. Stat. 26, 641 (1955)). This size is a check
+  /// of critical_size(), but less precise.
   std::optional<Estimate> monotone_critical_size() const;
   /// 90 % interval of the critical size in repeated studies with `runs` runs.
   Interval repeated_critical_size(std::size_t runs) const;
 
  private:
-  /// Sums for each size (row), see Column in growth.cpp. The sums of several runs can be added.
+  /// One row for each size; enum Column in growth.cpp names the columns. The sums of several runs
+  /// can be added.
   using Sums = Eigen::Array<double, largest, 6>;
   std::vector<Sums> runs_;
 

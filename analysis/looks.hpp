@@ -30,8 +30,8 @@ struct LookPower {
 
 /// The power at each look if the true value is `truth` and the values of the runs have a normal
 /// distribution. `spread`: Estimate::spread. `groups`: 1 for one group or for pairs, 2 for two
-/// groups of equal size. Every call simulates the same 4000 studies. Standard errors are at most
-/// 0.008.
+/// groups of equal size. Every call simulates 4000 studies, with the same random numbers. Standard
+/// errors are at most 0.008.
 std::vector<LookPower> power_of(const Claim& claim, double truth, double spread, std::size_t groups,
                                 std::span<const std::size_t> looks);
 

@@ -117,7 +117,9 @@ void Provider::read(const json& result, Measures& into) const try {
   }
   if (read_more != nullptr) read_more(result, into);
 } catch (const json::exception& problem) {
-  throw AnalysisError(std::string("a cached result does not fit its provider: ") + problem.what());
+  throw AnalysisError(
+      std::string("a cached result does not have the form that its provider expects: ") +
+      problem.what());
 }
 
 std::vector<std::byte> encode_result(const json& result) {

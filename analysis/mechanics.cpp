@@ -202,8 +202,8 @@ std::vector<Provider> mechanics_providers() {
              "kinetic part of the pressure, from velocities minus the mean flow"},
             {"coordination", "1", "contacts per interior grain"},
             {"rattlers_percent", "%",
-             "interior grains with fewer than four contacts (rattlers), not counting contacts with "
-             "rattlers"},
+             "interior grains that are rattlers: fewer than four contacts with walls and "
+             "with grains that are not rattlers"},
             {"coordination_without_rattlers", "1",
              "contacts per interior grain that is not a rattler, excluding contacts with rattlers"},
             {"force_bottom_x_N", "N", "x component of the force of the grains on the bottom wall"},

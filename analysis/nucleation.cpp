@@ -119,10 +119,10 @@ Likelihood likelihood(const Shares& amplitudes, double exponent) {
   return sum;
 }
 
-/// Whether the runs show how the rate depends on size: at least one event can be compared with a
-/// smaller cell, and at least one event with a larger cell, each at the same amplitude and nearly
-/// the same phi. Cells are compared by N, because the number of interior grains differs slightly
-/// between seeds of one N.
+/// Whether the runs show how the rate depends on size. For at least one event there must be a run
+/// in a smaller cell at the same amplitude and nearly the same phi, and for at least one event such
+/// a run in a larger cell. Cells are compared by N, because the number of interior grains differs
+/// slightly between seeds of one N.
 bool is_bounded(const Shares& amplitudes) {
   bool larger = false, smaller = false;
   for (const auto& [amplitude, shares] : amplitudes) {

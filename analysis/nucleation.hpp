@@ -27,24 +27,26 @@ inline constexpr double nominal_height = 1.675;  ///< [L], supplement E
 enum class Seen { always, first };
 
 /// Positions along `axis` of the centres of mass of all crystallites of 15 to 25 grains in a run. x
-/// starts 1 d outside the left plane and is divided by width + 2 d. y starts at the bottom plane
-/// and is divided by the height. Positions are in [0, 1], but `y_nominal` can exceed 1. [choice]
+/// starts 1 d outside the left plane and is divided by width + 2 d. y and y_nominal start at the
+/// bottom plane and are divided by the heights of CellAxis. x and y are in [0, 1]; y_nominal can
+/// exceed 1. [choice]
 std::vector<double> nucleus_places(const FrameRun& run, CellAxis axis, Seen seen = Seen::always);
 
 struct DensityBin {
   double low = 0;
   double high = 0;
   double density = 0;           ///< P; its integral over [0, 1] is 1
-  std::optional<double> error;  ///< by bootstrap, because one crystallite is seen at many cycles
+  std::optional<double> error;  ///< by bootstrap over groups, see density()
 };
 
 /// Density of all positions together; empty without positions. Each group has the positions of one
-/// packing. The bootstrap draws groups, so the groups must be independent.
+/// packing. The bootstrap draws whole groups, which must be independent. The positions in a group
+/// are not independent, because one crystallite is seen at many cycles.
 std::vector<DensityBin> density(std::span<const std::vector<double>> groups, std::size_t bins);
 
-/// A nucleation rate is per grain of a region, as a function of the phi of this region. The grains
-/// of the region are at least 1.5 d (interior) or 4 d (core) from the wall surfaces
-/// (packing_fraction.hpp). The cycle of the onset does not depend on the region.
+/// A nucleation rate is a number of events per cycle and per grain of a region. The rate depends on
+/// the phi of the same region. Its grains are at least 1.5 d (interior) or 4 d (core) from the wall
+/// surfaces (packing_fraction.hpp). The cycle of the onset does not depend on the region.
 enum class Region { interior, core };
 /// Name of the measure that counts the grains of the region.
 std::string grains_of(Region region);
@@ -85,9 +87,10 @@ inline constexpr double rate_step = 0.0005;
 /// for which the log-likelihood is within a limit of its maximum. If runs share a packing, the
 /// variance of the score between packings may exceed the variance for independent runs. The limit
 /// is then multiplied by the ratio of the two variances (L. Pace, A. Salvan, N. Sartori, Stat.
-/// Sinica 21, 129 (2011)). Empty for fewer than least_runs packings. Also empty if N does not vary
-/// enough: at least one event must be comparable with a cell of fewer grains, and at least one with
-/// a cell of more grains, each at the same amplitude and nearly the same phi.
+/// Sinica 21, 129 (2011)). Empty for fewer than least_runs packings. Also empty if the sizes of
+/// the cells differ too little. For at least one event there must be a run in a cell of fewer
+/// grains at the same amplitude and nearly the same phi, and for at least one event such a run in a
+/// cell of more grains.
 std::optional<Estimate> size_exponent(RunGroup runs, Region region,
                                       double level = confidence_level);
 

@@ -103,8 +103,9 @@ std::vector<Provider> onset_providers() {
       {.name = "onsets",
        .measures =
            {of_run("critical_size",
-                   "critical size in the supplement at the nearest amplitude, in grains", +critical,
-                   "the critical size"),
+                   "critical size in grains, from the supplement, at the published amplitude "
+                   "nearest to that of the run",
+                   +critical, "the critical size"),
             of_run("onset_size_cycle",
                    "cycle of the onset by method 1, where the largest crystallite reaches the "
                    "critical size",

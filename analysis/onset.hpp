@@ -32,9 +32,10 @@ RunOnset onset_by_size(const FrameRun& run);
 
 /// Method 2: the phi at which ln(largest crystallite) rises most steeply with phi. The slope at phi
 /// is the slope of the least-squares line through the checkpoints within `slope_window / 2` of phi.
-/// At least four such checkpoints must span half of the window; a run without such a window is
-/// `unclear`. A packing without crystallites counts as size 1. A run whose largest
-/// crystallite never reaches the critical size is `never`. [choice]
+/// A phi is left out if fewer than four checkpoints lie within this distance, or if these
+/// checkpoints and phi span less than half of `slope_window`. A run is `unclear` if no slope is
+/// positive at the other values of phi. Without crystallites, the size of the largest is taken
+/// as 1. A run whose largest crystallite never reaches the critical size is `never`. [choice]
 inline constexpr double slope_window = 0.008;
 RunOnset onset_by_slope(const FrameRun& run);
 

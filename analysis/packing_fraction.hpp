@@ -33,15 +33,15 @@ inline double interior_margin(const Cell& cell) {
 struct Overlaps {
   std::vector<double> largest;         ///< delta_max,i [d], 0 for a grain without contact
   std::vector<std::int32_t> contacts;  ///< contacts of each grain with grains and wall grains
-  double mean = 0;  ///< mean over touching pairs of grains (Eq. S3) [d]; 0 without pairs
+  double mean = 0;  ///< mean overlap of touching pairs of grains (Eq. S3) [d]; 0 without pairs
 };
 
 /// Computes the overlaps of `grains` (3 x n [d], z unwrapped).
 Overlaps overlaps(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd& grains);
 
-/// Distance of each grain's centre from the nearest wall surface in x and y [d], measured along the
-/// normal of the wall. Without wall grains in the cell, the surface is the wall plane. With wall
-/// grains, the surface is this plane, moved by `rough_wall_surface` towards the interior.
+/// Distance [d] of each grain's centre from the nearest of the four wall surfaces, measured along
+/// the normal of the wall. Without wall grains in the cell, the surface is the wall plane. With
+/// wall grains, the surface is this plane, moved by `rough_wall_surface` towards the interior.
 std::vector<double> distances_from_walls(const Cell& cell, const WallPose& pose,
                                          const Eigen::Matrix3Xd& grains);
 

@@ -32,8 +32,8 @@ Eigen::Matrix3Xd interior_sites(const MeasureInput& input) {
   return input.checkpoint->state.position(Eigen::all, sites);
 }
 
-// Volume of the set of pairs (r, r + s) for which r and r + s are in the region and |s| is in the
-// range [from, to) [d^6]. The set covariance of the region (width W, height H, depth D), averaged
+// Volume [d^6] of the set of pairs (r, r + s) for which r and r + s are in the region and |s| is in
+// the range [from, to). The set covariance of the region (width W, height H, depth D), averaged
 // over the directions n of s, is D <(W - |s| |a n|)(H - |s| |b n|)>. Here a = (1, -tan theta, 0)
 // and b = (0, 1, 0).
 double pair_volume(const InteriorRegion& region, double from, double to) {
@@ -74,8 +74,8 @@ inline TwoSites operator*(const TwoSites& a, const TwoSites& b) {
 using Wave = std::array<TwoSites, 16>;
 constexpr auto kBlock = static_cast<Eigen::Index>(2 * std::tuple_size_v<Wave>);
 
-// exp(2 pi i n s) for n = -most ... most, at the fractional coordinates s of at most kBlock sites.
-// If there are fewer sites, the remaining values are 0.
+// exp(2 pi i n s) for each n from -`most` to `most`, at the fractional coordinates s of up to
+// kBlock sites. If there are fewer sites, the remaining values are 0.
 std::vector<Wave> waves(const Eigen::ArrayXd& s, int most) {
   std::vector<Wave> found(2 * static_cast<std::size_t>(most) + 1);
   const auto middle = found.begin() + most;
@@ -166,7 +166,7 @@ MeasuredCurve structure_factor(const MeasureInput& input) {
   if (!(region.width > 0 && region.height > 0) || sites.cols() == 0) return {};
   const WaveVector most = largest_components(region);
   // Limits the computing time if a forged file has a cell far larger than its grains need. In a
-  // real packing, the sum of `most` is at most a third of this limit.
+  // real packing, the sum of the components of `most` is at most a third of this limit.
   const double largest_sum = 60 * std::cbrt(static_cast<double>(sites.cols()));
   if (most[0] + most[1] + most[2] > std::max(1000.0, largest_sum)) return {};
   const Eigen::ArrayXd y = sites.row(1).array() - region.bottom;

@@ -50,7 +50,8 @@ bool draws_runs(const PlotSpec& plot) {
 
 // --- Select ---
 
-/// The column's value for the run at the checkpoint, minus the mean of the partners' values.
+/// The column's value for the run at the checkpoint, minus the mean of its values for the runs in
+/// Selected::partners at the same cycle.
 double value_of(const NumberColumn& column, const Selected& one,
                 const CheckpointMeasures* checkpoint) {
   const double own = column(*one.run, checkpoint);
@@ -297,7 +298,7 @@ void set_titles(const PlotSpec& plot, const NameVariants& name, std::span<Curve>
 }
 
 /// Sets Curve::style to the first entry of PlotSpec::series that matches the curve. A curve gets no
-/// style if no entry matches it, or if another curve has the same first entry. With
+/// style if no entry matches it, or if its entry is also the first match of another curve. With
 /// PlotSpec::listed, styles are used only if PlotSpec::series contains every parameter in which the
 /// curves differ.
 void set_styles(const PlotSpec& plot, std::span<Curve> curves) {
@@ -679,7 +680,7 @@ bool follow_runs(const Curve& curve, double last_cycle, bool rms, Series& mean,
   return true;
 }
 
-/// A column of the table of means, and its cell in the row of a bin.
+/// A column of the table of means: its name, and a function that returns its cell for a bin.
 struct BinColumn {
   std::string name;
   std::function<TableCell(const Bin& bin)> cell;
@@ -788,10 +789,10 @@ void require_different_titles(std::span<const Curve> curves) {
   }
 }
 
-/// Sets title and style of the curve of column k of y. `alone`: each column has only one curve.
+/// Sets title and style of the series for column k of a curve. `alone`: the panel has one curve.
 void name_y(const PlotSpec& plot, std::size_t k, bool alone, Series& series) {
   const auto [measure, name] = measures_of(plot)[k];
-  // If a panel has one curve, its columns differ in colour and symbol. In panels with several
+  // In a panel with one curve, the columns differ in colour and symbol. In a panel with several
   // curves, the columns of one curve differ only in symbol.
   if (alone) {
     series.colour = safe_colours[k % safe_colours.size()];
@@ -850,15 +851,15 @@ Table draw(const Panel& panel) {
     Series series = series_of(curve);
     series.band = what != Against::number_of_run;
     if (what == Against::curve) leave_out_symbol(curve, series);
-    // Series::runs stays 0 if each run has one x, because the points then come from different runs.
+    // If x is a number of the whole run, different points come from different runs, and
+    // Series::runs stays 0.
     if (what != Against::number_of_run) series.runs = by_packing(runs_of(curve.traces)).size();
     for (std::size_t k = 0; k <= plot.drawn; ++k) {
       Series& drawn = table.chart.series.emplace_back(series);
       drawn.points = mean_points(what, bins, k);
       if (k == 0 && what == Against::cycle && !bins.empty() &&
           follow_runs(curve, bins.back().at, columns[0].rms, drawn, single)) {
-        table.chart.note =
-            "Thin lines: single runs, drawn where the shortest run of the curve has ended";
+        table.chart.note = "Thin lines: single runs, after the shortest run of the curve has ended";
       }
       if (plot.drawn == 0) continue;
       name_y(plot, k, panel.curves.size() == 1, drawn);

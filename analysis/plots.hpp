@@ -29,8 +29,8 @@ enum class LogAxes : std::uint8_t { none, x, y, xy };
 template <>
 inline constexpr auto kNames<LogAxes> = names_in_order<LogAxes>("none", "x", "y", "xy");
 
-/// The style of the curve whose variants have the parameter values in `where`. A member that is ""
-/// is replaced by a style that depends on the swept values (styles.hpp).
+/// Label, colour and symbol of the curve whose variants have the parameter values in `where`. An
+/// empty label, colour or marker follows from the swept values (styles.hpp).
 struct SeriesSpec {
   nlohmann::json where;     ///< parameter -> value, for all variants of the curve
   std::string column = {};  ///< instead of `where`: the name of a column, if `y` has several
@@ -109,7 +109,8 @@ using Plots = std::shared_ptr<const std::vector<PlotSpec>>;
 /// A run that a plot draws.
 struct Selected {
   const FrameRun* run;
-  /// Runs of the variant PlotSpec::minus from the same packing as `run`. Their mean is subtracted.
+  /// The runs that PlotSpec::minus selects and that have the same packing as `run`. The mean of
+  /// their values is subtracted.
   std::vector<const FrameRun*> partners = {};
   std::vector<const CheckpointMeasures*> checkpoints = {};
 };
@@ -117,7 +118,8 @@ struct Selected {
 struct PlotRuns {
   std::vector<Selected> drawn = {};
   std::vector<const FrameRun*> subtracted = {};  ///< runs with the parameters PlotSpec::minus
-  std::vector<const FrameRun*> alone = {};  ///< left out: `subtracted` has no run of this packing
+  /// Runs that are left out, because no run in `subtracted` has the same packing.
+  std::vector<const FrameRun*> alone = {};
 };
 
 /// The runs of a list whose items have a member `run`.

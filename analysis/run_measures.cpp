@@ -88,8 +88,8 @@ std::vector<Provider> run_providers() {
              "energy that all grains and the moving wall lost by drag in the cycle before the "
              "checkpoint"},
             {"energy_stored_per_cycle_J", "J",
-             "change, in the cycle before the checkpoint, of the elastic, kinetic and "
-             "gravitational energy of all grains plus the energy of the load"}},
+             "change of the total energy in the cycle before the checkpoint: elastic, kinetic and "
+             "gravitational energy of all grains, and energy of the load"}},
        .compute = ledger_of,
        .cycles_back = 1,
        .from = ComputedFrom::simulation,
@@ -115,7 +115,8 @@ std::vector<Provider> run_providers() {
                      "load minus contact force on the moving wall, divided by P A_w"},
                     {"raised_stiffness_N_per_m", "N/m", "spring constant during a stiffening"},
                     {"force_residual_P_d2", "P d^2",
-                     "largest net force on a grain in a stiffening, divided by P d^2"}},
+                     "largest net force on a grain at a checkpoint of a stiffening, "
+                     "divided by P d^2"}},
        .compute = record_of,
        .from = ComputedFrom::record},
       {.name = cost_provider,

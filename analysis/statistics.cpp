@@ -28,7 +28,7 @@ Interval around(double value, double error, double freedom, double level) {
   return {value - half, value + half};
 }
 
-/// Draws selections of `chosen` runs. Returns the statistic of each selection, except NaN.
+/// Draws selections with `chosen` runs each. Returns the statistic of each; NaN is left out.
 std::vector<double> bootstrap_values(std::size_t runs, std::size_t chosen,
                                      const RunStatistic& statistic) {
   std::vector<std::size_t> selection(chosen);
@@ -317,7 +317,8 @@ std::optional<Estimate> log2_wait_ratio(std::span<const Waiting> a, std::span<co
   double negative = edges.front();  // the statistic is negative below this factor
   double positive = edges.back();   // the statistic is positive above this factor
   Interval kept{infinite, -infinite};
-  for (std::size_t k = 0; k <= edges.size(); ++k) {  // each interval between edges
+  // Each interval: before the first edge, between two edges, and after the last edge.
+  for (std::size_t k = 0; k <= edges.size(); ++k) {
     const double low = k == 0 ? -infinite : edges[k - 1];
     const double high = k == edges.size() ? infinite : edges[k];
     const double factor = k == 0 ? high - 1 : k == edges.size() ? low + 1 : (low + high) / 2;

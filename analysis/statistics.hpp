@@ -46,8 +46,8 @@ inline constexpr double confidence_level = 0.9;
 /// Minimum number of runs, or of pairs of runs, for an estimate. [choice]
 inline constexpr std::size_t least_runs = 3;
 /// Minimum number of runs for the bootstrap. A bootstrap interval of a mean lies between the
-/// smallest and the largest value. These two values enclose the median with a probability of
-/// 1 - 2^(1 - runs): 75 % for 3 runs, 94 % for 5.
+/// smallest and the largest value. These two values enclose the median of the distribution with a
+/// probability of 1 - 2^(1 - runs): 75 % for 3 runs, 94 % for 5.
 inline constexpr std::size_t least_bootstrap_runs = 5;
 
 inline constexpr double infinite = std::numeric_limits<double>::infinity();
@@ -71,7 +71,7 @@ Estimate estimate_with(double value, const Interval& interval, double quantile, 
 /// Applies an increasing function to the value and the interval, but not to the spread.
 Estimate mapped(Estimate estimate, const std::function<double(double)>& increasing);
 
-/// Quantiles of Student's t with `freedom` degrees of freedom and of the normal distribution.
+/// Quantiles of Student's t (with `freedom` degrees of freedom) and of the normal distribution.
 double student_quantile(double probability, double freedom);
 double normal_quantile(double probability);
 
@@ -104,13 +104,14 @@ struct SpreadBetween {
 };
 /// Analysis of variance of groups with one value per run. The groups may differ in size: S. R.
 /// Searle, G. Casella and C. E. McCulloch, Variance Components (1992), section 3.6. The upper limit
-/// is from J. S. Williams, Biometrika 49, 278 (1962), for k groups and n values in all:
+/// of the standard deviation is from J. S. Williams, Biometrika 49, 278 (1962). For k groups and n
+/// values in all it is
 ///
 ///     limit^2 = (k - 1) (MSB - F MSW) / (n0 chi^2)
 ///
 /// MSB and MSW are the mean squares between and within groups. n0 is the effective group size.
-/// F(k - 1, n - k) and chi^2(k - 1) are quantiles at (1 - level) / 2. Empty for fewer than two
-/// groups with values, or if no group has two values.
+/// F(k - 1, n - k) and chi^2(k - 1) are quantiles at (1 - level) / 2. The result is empty for
+/// fewer than two groups with values, or if no group has two values.
 std::optional<SpreadBetween> variance_between(std::span<const std::vector<double>> groups,
                                               double level = confidence_level);
 

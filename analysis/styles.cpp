@@ -22,8 +22,8 @@ json values_of(const json& variant, std::span<const std::string> keys) {
   return values;
 }
 
-/// `count`: number of different sets of values. `rank`: index of the variant's set of values if the
-/// different sets are sorted.
+/// `count`: number of distinct sets of values that `keys` have in `variants`. `rank`: index of the
+/// variant's set in the sorted list of these sets.
 struct Rank {
   std::size_t rank = 0;
   std::size_t count = 0;
@@ -131,7 +131,8 @@ Look Looks::of(RunGroup curve, const json& key) const {
     const double amplitude = amplitude_of(one);
     return std::abs(published_nearest(amplitude).amplitude_rad - amplitude) < 1e-6;
   };
-  const auto has_own_colour = [&](const json& one) {  // stated for no other variant
+  // Whether the palette still has the colour of the amplitude: stated colours were removed.
+  const auto has_own_colour = [&](const json& one) {
     return std::ranges::count(palette, amplitude_look(amplitude_of(one), 0).colour) > 0;
   };
   if (!keys.empty() && keys.front() == "amplitude_rad" && has_own_colour(variant) &&

@@ -23,7 +23,7 @@ inline constexpr std::array<const char*, 7> safe_colours = {
 inline constexpr std::array<std::string_view, 7> colour_names = {
     "blue", "vermilion", "green", "purple", "orange", "sky", "black"};
 
-/// Names of symbols in manifests: none, then the symbols of curve_symbol() in their order.
+/// Names of symbols in manifests: "none", followed by the symbols of curve_symbol() in their order.
 inline constexpr std::array<std::string_view, 11> marker_names = {
     "none",        "square",      "circle",        "triangle",           "triangle_down", "diamond",
     "open_square", "open_circle", "open_triangle", "open_triangle_down", "open_diamond"};
@@ -76,9 +76,9 @@ class Looks {
 
   /// Colour and symbol of a curve. If all runs of the curve belong to one variant, the swept values
   /// of this variant decide. Otherwise `key` decides: the values that all runs of the curve share.
-  /// If the curve has the parameters StatedLook::where, and all variants with these parameters
-  /// would have the same colour, the stated colour is used. The stated symbol is then used, too,
-  /// unless other curves of the panel have these parameters.
+  /// A StatedLook is used if the curve has the parameters StatedLook::where and the swept values
+  /// give one colour to all variants with these parameters. The curve then has the stated colour.
+  /// It also has the stated symbol, unless other curves of the panel have these parameters.
   Look of(RunGroup curve, const nlohmann::json& key) const;
 
  private:

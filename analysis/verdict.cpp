@@ -58,14 +58,14 @@ json claim_of(const Verdict& verdict) {
   return claim;
 }
 
-/// The factor of a waiting time: "3.3" for log2(3.3) and for log2(1 / 3.3).
+/// The longer of two waiting times divided by the shorter: "3.3" for log2(3.3) and log2(1 / 3.3).
 std::string factor(double log2) {
   const double value = std::exp2(std::abs(log2));
   return fmt::format("{:.{}f}", value, value < 10 ? 1 : 0);
 }
 
-/// "0.0012, 90 % interval -0.0003 to 0.0027". For waiting times: "the first group is 2.1 times
-/// later, 90 % interval 1.3 times later to 3.4 times later".
+/// "0.0012, 90 % interval -0.0003 to 0.0027". For waiting times: "the events of the first group
+/// come 2.1 times later, 90 % interval 1.3 times later to 3.4 times later".
 std::string estimate_with_interval(const Verdict& verdict) {
   const bool waits = !verdict.waits_for.empty();
   const auto text = [&](double value) {
@@ -75,11 +75,12 @@ std::string estimate_with_interval(const Verdict& verdict) {
   };
   const auto [low, high] = verdict.interval;
   const bool any_end = std::isfinite(low) || std::isfinite(high);
-  return fmt::format("{}, {:.3g} % interval {}",
-                     !std::isfinite(*verdict.estimate)
-                         ? "no finite value"
-                         : (waits ? "the first group is " : "") + text(*verdict.estimate),
-                     100 * verdict.level, any_end ? text(low) + " to " + text(high) : text(low));
+  return fmt::format(
+      "{}, {:.3g} % interval {}",
+      !std::isfinite(*verdict.estimate)
+          ? "no finite value"
+          : (waits ? "the events of the first group come " : "") + text(*verdict.estimate),
+      100 * verdict.level, any_end ? text(low) + " to " + text(high) : text(low));
 }
 
 }  // namespace

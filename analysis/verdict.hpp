@@ -83,9 +83,9 @@ Ruling ruling_of(const Interval& interval, double margin, Relation claimed);
 /// The verdict that follows from the estimate's interval; undecided without an estimate. If the
 /// claim has a reason why it cannot be decided, the verdict is undecidable, with this reason.
 /// `runs_needed`: for an undecided claim, the total number of runs (more than Estimate::runs) that
-/// decides the claim with 90 % probability. The assumed true value is 0 for Relation::same, and
-/// twice the margin for other relations. If the interval excludes 0, or if the number found is at
-/// most Estimate::runs, the assumed true value is the estimate instead.
+/// decides the claim with 90 % probability. The number is computed for the true value 0
+/// (Relation::same) or twice the margin (other relations). If the result is at most Estimate::runs,
+/// or if the interval excludes 0, the number is computed for the estimate as true value instead.
 Verdict decide(const Claim& claim, std::string quantity, const std::optional<Estimate>& estimate,
                std::size_t runs, std::string note, Table entered = {},
                Counted counted = Counted::runs);
@@ -110,12 +110,12 @@ Table entered_table(std::span<const Verdict> verdicts);
 nlohmann::json to_json(std::span<const Verdict> verdicts);
 
 /// "0.0012, 90 % interval -0.0003 to 0.0027, margin 0.001, 6 runs per variant (24 needed)". For
-/// waiting times: "the first group is 2.1 times later, 90 % interval 1.3 times later to 3.4 times
-/// later, margin: twice, 6 runs per variant".
+/// waiting times: "the events of the first group come 2.1 times later, 90 % interval 1.3 times
+/// later to 3.4 times later, margin: twice, 6 runs per variant".
 std::string numbers_of(const Verdict& verdict);
 
 /// The quantity, numbers_of() and the note, as the terminal and the report print them:
-/// "cycle of the onset (log-rank test): the first group is 2.1 times later, ...".
+/// "cycle of the onset (log-rank test): the events of the first group come 2.1 times later, ...".
 std::string result_of(const Verdict& verdict);
 
 }  // namespace shearcell

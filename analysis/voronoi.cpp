@@ -29,7 +29,7 @@ constexpr double coincidence_distance = 1e-10;  // closer sites coincide [d]
 // Images within this margin suffice in a dense packing. Other packings need a second pass.
 constexpr double first_margin_spacings = 2.1;
 // A circumcentre is computed in exact arithmetic if its error in doubles may exceed this value,
-// relative to the larger of 1 d and the radius of the sphere.
+// relative to the larger of 1 d and the circumradius.
 constexpr double worst_centre_error = 1e-12;
 
 /// A site shifted by a whole number of periods in z. Image 0 is the site itself.
@@ -60,8 +60,8 @@ std::size_t corner_of(const Tetrahedron& t, std::int32_t vertex) {
          (t.vertex[3] == vertex ? 3U : 0U);
 }
 
-/// Computes the Voronoi cells of the grains, the first `grains` sites, from a Delaunay
-/// triangulation.
+/// Computes the Voronoi cells of the grains from a Delaunay triangulation. The grains are the first
+/// `grains` sites.
 ///
 /// CGAL's predicates are exact. The triangulation is therefore correct for the stored positions,
 /// even if many sites share a plane or a sphere. No bounded tetrahedron is flat. Circumcentres
@@ -74,8 +74,9 @@ std::size_t corner_of(const Tetrahedron& t, std::int32_t vertex) {
 /// inside a wall, so cells fit together without gaps. Polygon sides on a wall are the borders of
 /// the cells' faces on that wall.
 ///
-/// Eight guards at the corners of a large cube bound every cell. They are farther away in z than
-/// any image that a cell may need. So no cell that passes the test in measure() touches a guard.
+/// Eight additional points, the guards, at the corners of a large cube bound every cell. They are
+/// farther away in z than any image that a cell may need. So no cell that passes the test in
+/// measure() has a face with a guard.
 class Tessellation {
  public:
   Tessellation(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd& sites,
@@ -101,8 +102,8 @@ class Tessellation {
 
   /// Each corner of a cell is the centre of a sphere through the cell's site. The cell is correct
   /// if all these spheres lie within the margin. More images can only make cells smaller, so a
-  /// margin as large as the present reach of the spheres is sufficient. If a cell extends to a
-  /// guard, the reach is much larger than the margin that the cell needs. Therefore each pass at
+  /// margin as large as the present reach of the spheres is sufficient. While images are missing, a
+  /// cell can have a face with a guard. The reach is then much too large. Therefore each pass at
   /// most doubles the margin.
   VoronoiDiagram measure() {
     while (true) {
@@ -224,7 +225,7 @@ class Tessellation {
   }
 
   Eigen::Vector3d circumcentre(std::array<std::int32_t, 4> vertices) const {
-    // A grain becomes the origin of the edges, so that only edges to guards are long.
+    // The vectors a, b and c start at a grain, so that only vectors to guards are long.
     if (!is_grain(vertices[0])) {
       std::iter_swap(vertices.begin(), std::ranges::find_if(vertices, [&](std::int32_t vertex) {
                        return is_grain(vertex);
@@ -334,10 +335,10 @@ class Tessellation {
   }
 
   /// Clips the face between a and b at the walls in `beyond`. Returns twice the vector area of the
-  /// remaining polygon. A side of this polygon that lies on a wall also borders the wall faces of
-  /// the cells of a and b. Its contribution is added to the areas of these two wall faces: the area
-  /// of a wall face is the integral of -z du along its border, where u is the coordinate along the
-  /// wall, normal to z. At the edges of the box du is 0.
+  /// remaining polygon. A side of this polygon on a wall is also an edge of two wall faces: one of
+  /// the cell of a, one of the cell of b. The contribution of the edge is added to the areas of
+  /// both faces: the area of a wall face is the integral of -z du along its border, where u is the
+  /// coordinate along the wall, normal to z. At the edges of the box du is 0.
   Eigen::Vector3d clip(std::size_t start, std::int32_t a, std::int32_t b, unsigned beyond) {
     polygon_.clear();
     walk_around(start, a, b, [&](const Tetrahedron& t, std::uint8_t) {

@@ -124,19 +124,22 @@ TEST(Verdict, WaitsAreComparedInWords) {
   EXPECT_EQ(words(-infinity, -infinity, -4),
             "no finite value, 90 % interval unbounded to 16 times earlier");
   EXPECT_EQ(words(3, -1, infinity),
-            "the first group is 8.0 times later, 90 % interval 2.0 times earlier to unbounded");
+            "the events of the first group come 8.0 times later, 90 % interval 2.0 times earlier "
+            "to unbounded");
   EXPECT_EQ(words(-3, -infinity, 1),
-            "the first group is 8.0 times earlier, 90 % interval unbounded to 2.0 times later");
+            "the events of the first group come 8.0 times earlier, 90 % interval unbounded to 2.0 "
+            "times later");
   EXPECT_EQ(words(1, -infinity, infinity),
-            "the first group is 2.0 times later, 90 % interval unbounded");
+            "the events of the first group come 2.0 times later, 90 % interval unbounded");
   EXPECT_EQ(words(1, 0.5, 3),
-            "the first group is 2.0 times later, 90 % interval 1.4 times later to 8.0 times later");
-  EXPECT_EQ(
-      words(-1, -3, -0.5),
-      "the first group is 2.0 times earlier, 90 % interval 8.0 times earlier to 1.4 times earlier");
-  EXPECT_EQ(
-      words(0.1, -1, 1.5),
-      "the first group is 1.1 times later, 90 % interval 2.0 times earlier to 2.8 times later");
+            "the events of the first group come 2.0 times later, 90 % interval 1.4 times later to "
+            "8.0 times later");
+  EXPECT_EQ(words(-1, -3, -0.5),
+            "the events of the first group come 2.0 times earlier, 90 % interval 8.0 times earlier "
+            "to 1.4 times earlier");
+  EXPECT_EQ(words(0.1, -1, 1.5),
+            "the events of the first group come 1.1 times later, 90 % interval 2.0 times earlier "
+            "to 2.8 times later");
   verdict.margin = 1.585;
   verdict.note = "a note";
   EXPECT_TRUE(has(result_of(verdict), "margin: 3.0 times, 6 runs per variant; a note"));
