@@ -644,9 +644,8 @@ struct Reader {
     return !(of_run && of_checkpoint);
   }
 
-  // Adds to `where` a parameter with its value, its list of values or its range. Two
-  // other keys are allowed: `experiment` selects runs of an experiment, `cycle` selects
-  // checkpoints.
+  // Adds to `where` a parameter with its value, its list of values or its range. Two other keys are
+  // allowed: `experiment` selects runs of an experiment, `cycle` selects checkpoints.
   void read_where(const Node& in, json& where) {
     const std::array others = {Field{.name = "experiment", .names = experiments},
                                Field{.name = "cycle", .range = kCycles}};

@@ -51,8 +51,8 @@ class Filter {
   bool passes(const std::string& value, const std::string& name = "");
   /// The first of the given texts that selects none of the values in seen(), or null.
   const std::string* unfound() const;
-  /// The values that passes() was called with, each once, in order. If the display
-  /// name of a value has additional parts, the name follows as the next element.
+  /// The values that passes() was called with, each once, in order. If the display name of
+  /// a value has additional parts, the name follows as the next element.
   const std::vector<std::string>& seen() const { return seen_; }
 
  private:
