@@ -152,7 +152,7 @@ struct VariantCheck {
     if (too_large(shape)) {
       report({"fill_packing_fraction", "nominal_packing_fraction"},
              format("the cell for the loose grains would be too large: {:.3g} d wide and {:.3g} d "
-                    "high, and {:.2g} wall grains for {} grains",
+                    "high, with {:.2g} wall grains for {} grains",
                     cell_width(shape), fill_height(shape), wall_grain_count(shape), p.grains),
              "Raise this value, or nominal_packing_fraction.");
     }
@@ -309,8 +309,8 @@ std::vector<string> advice_on(const Variant& variant, bool settles) {
   }
   if (!pressure_lifts_column(p)) {
     advice.push_back(
-        format("the pressure of {} Pa cannot lift the grains above the moving bottom wall (N = "
-               "{}). Use `pressure_at: top` or `moving_wall: top`, raise pressure_Pa, turn gravity "
+        format("at the pressure of {} Pa, the moving bottom wall cannot lift the grains (N = {}). "
+               "Use `pressure_at: top` or `moving_wall: top`, raise pressure_Pa, turn gravity "
                "off, or lower height_over_width.",
                p.pressure_Pa, p.grains));
   }
@@ -453,12 +453,12 @@ string lack_of_partner(const PlotSpec& plot, const PlotRuns& selection) {
   std::vector<string> alone;
   for (const FrameRun* run : selection.alone) alone.push_back(run->place.variant);
   return format(
-      "the plot omits {}, because {} does not have the same packings. Under `settle`, set the "
-      "parameters that all packings must share.",
+      "the plot omits {}, because the subtracted variant ({}) has different packings. Under "
+      "`settle`, give one value to each swept parameter that changes the packings.",
       some_of(alone, 8), words_of(plot.minus));
 }
 
-/// Number of curves of the plot that the entry of `series` matches.
+/// Number of curves in the plot that get their style from this entry of `series`.
 std::size_t curves_of(const SeriesSpec& series, const PlotSpec& plot, RunGroup runs) {
   std::set<json> curves;
   for (const FrameRun* run : runs) {
@@ -572,10 +572,10 @@ std::vector<std::pair<string, const Placed<Spec>*>> stated_in(
   return found;
 }
 
-/// Reports each entry of `primary` that is not the id of a claim at any scale (in older manifests:
-/// its statement). An id can end in `@` and a value of `for_each`. This value is not checked for
-/// claims of computed figures and for claims over the runs of other experiments (`of`), because
-/// there the values do not follow from this manifest.
+/// Reports each entry of `primary` that is neither the id of a claim nor, as in older manifests,
+/// the statement of a claim. Claims of all scales count. An id can end in `@` and a value of
+/// `for_each`. This value is not checked for claims of computed figures and for claims over the
+/// runs of other experiments (`of`), because there the values do not follow from this manifest.
 void check_primary(const Manifest& manifest, const std::vector<Scale>& scales,
                    ProblemList& problems) {
   std::set<string> ids, unchecked, statements;
@@ -697,7 +697,7 @@ void check_variants(const Manifest& manifest) {
     if (!scale.looks.empty()) needed.push_back({scale.looks.back(), scale.seeds.at});
     for (const auto& [number, at] : needed) {
       if (number <= seeds) continue;
-      problems.add(at, "seeds", "are fewer than a number in `looks` or in the sweep", number.dump(),
+      problems.add(at, "seeds", "are fewer than `looks` or the sweep needs", number.dump(),
                    format("Write `seeds: {}`, or list this many seeds.", number.dump()));
     }
     if (variants > ManifestLimits::runs || variants * seeds > ManifestLimits::runs - runs) {

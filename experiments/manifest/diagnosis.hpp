@@ -20,8 +20,8 @@ void check_variants(const Manifest& manifest);
 /// Why LAMMPS cannot compute these runs; "" if it can, or if LAMMPS is not the engine.
 std::string unfit_for_lammps(const Parameters& parameters, const Checkpoints& checkpoints);
 
-/// Returns warnings about the plots and claims of a manifest with the key `of`. Such a manifest
-/// defines no runs, so only problems that can be found without runs are reported.
+/// For a manifest that has the key `of`: returns warnings about its plots and claims. Such a
+/// manifest defines no runs, so only problems that can be found without runs are reported.
 std::vector<std::string> warnings_of(const Manifest& manifest);
 
 /// Returns warnings about the variants in `planned`, one line each. Reasons: a parameter makes

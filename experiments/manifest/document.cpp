@@ -106,7 +106,7 @@ class TreeBuilder : public YAML::EventHandler {
   void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
     keep(anchor, add({.at = position(mark)}));
   }
-  // Adds a copy of the anchored value. The limits count the copy like a value that is written out.
+  // Adds a copy of the anchored value. The copy counts towards ManifestLimits like any other value.
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
     const auto known = anchored_.find(anchor);
     if (known == anchored_.end()) refuse_reference(mark);  // an alias inside its own value

@@ -18,7 +18,7 @@ struct Node {
   Position at = {};
   std::string text = {};         ///< the value of a scalar
   bool quoted = false;           ///< written in quotes or as a block
-  std::vector<Node> parts = {};  ///< items of a list, or values of a map with unique keys
+  std::vector<Node> parts = {};  ///< items of a list, or values of a map; its keys are unique
   std::string key = {};          ///< key of this node in its map; "" if in no map
   Position key_at = {};          ///< position of `key`; in a list, position of the list's key
   std::string path = {};         ///< keys from the root, as in "scales.smoke.grains"
@@ -43,10 +43,10 @@ inline constexpr const char* kDecimalPoint =
 /// than tabs and line ends. `remedy`: the advice given about a control character.
 void check_characters(std::string_view text, std::string_view file, std::string_view remedy);
 
-/// Makes a text safe to print in a one-line message, and cuts it after `longest` bytes. Writes an
-/// escape such as \x1b or \u202e in place of each control character, character that changes the
-/// direction of text, byte that is not UTF-8, noncharacter, invisible character, and blank other
-/// than the space.
+/// Makes a text safe to print in a one-line message, and cuts it after `longest` bytes. Writes
+/// escapes, such as \x1b or \u202e, for control characters, characters that change the direction of
+/// text, bytes that are not UTF-8, noncharacters, invisible characters, and blanks other than the
+/// space.
 std::string printable(std::string_view text, std::size_t longest = 60);
 
 /// Makes a text safe to print in a terminal. Unlike printable(), keeps blanks and
@@ -57,8 +57,9 @@ std::string without_controls(std::string_view text);
 std::string for_terminal(std::string_view text);
 
 /// The text as a reader sees it, for comparing names. Composes characters (Unicode NFC), removes
-/// invisible characters and outer blanks, makes each run of blanks one space, and replaces similar
-/// characters, such as minus and hyphen, by one of them. Returns "" if nothing is visible.
+/// invisible characters and the blanks at both ends, replaces consecutive blanks by one space, and
+/// replaces similar characters, such as minus and hyphen, by one of them. Returns "" if nothing is
+/// visible.
 std::string as_seen(std::string_view text);
 
 }  // namespace shearcell

@@ -51,7 +51,8 @@ std::vector<std::uint64_t> choose_seeds(const Manifest& manifest, const Seeds& s
   check_option(manifest, "seeds", *wanted, {.range = {1, ManifestLimits::runs}, .whole = true});
   if (!stated.counted && *wanted > seeds.size()) {
     refuse(manifest.file, {}, "seeds", "the manifest lists only " + counted(seeds.size(), "seed"),
-           std::to_string(*wanted), "List more seeds, or give a number of seeds.");
+           std::to_string(*wanted),
+           "List more seeds, or write only their number, as in `seeds: 6`.");
   }
   seeds.resize(*wanted);
   if (stated.counted) std::iota(seeds.begin(), seeds.end(), 1);
@@ -130,8 +131,8 @@ std::vector<FrameRun> planned_runs(const Manifest& manifest, const Scale& scale,
     const PlannedRun planned = planned_run(common, scale, variant, 1, nullptr, {});
     FrameRun& run = runs.emplace_back(FrameRun{planned});
     run.name = names.at(variant.swept);
-    // With `start`, the id of the packing is not known yet. All runs get the same text instead,
-    // because the variants may share a packing.
+    // With `start`, the id of the packing is not known yet. The variants may share a packing, so
+    // all runs get the same text in place of the id.
     const bool known = !scale.start.is_recorded() && scale.start.file.empty();
     run.packing = known ? planned.prepare->id : "start";
     for (const Field& field : schema()) run.parameters[field.name] = field.get(planned.parameters);
@@ -173,7 +174,7 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
   common.ask.checkpoint_every = scale.checkpoints.every_cycles;
   common.ask.checkpoint_phases = scale.checkpoints.phases;
   std::map<std::string, std::string> variant_of;  // by id of the last stage
-  std::set<std::string> fitted;                   // ids of packings whose grains were placed
+  std::set<std::string> fitted;                   // ids of packings that placed() has checked
   Filter wanted(options.variants), seed_filter(options.only_seeds);
   std::vector<std::uint64_t> chosen_seeds = seeds;
   std::erase_if(chosen_seeds,

@@ -24,9 +24,10 @@ struct ExpandOptions {
   std::optional<std::uint64_t> seeds = {};
   std::vector<std::string> variants = {};      ///< only variants with these values, as "fluid=cell"
   std::vector<std::uint64_t> only_seeds = {};  ///< only runs with these seeds; empty for all
-  std::optional<std::string> engine = {};      ///< replaces the engine; becomes a swept key
-  /// Stages in the store, and stages of the manifests before this one in the same command. If an
-  /// earlier command requested more cycles of this manifest, warnings assume the larger number.
+  std::optional<std::string> engine = {};      ///< replaces `engine`, which is then swept
+  /// Stages in the store, and stages of manifests that stand before this manifest in the same
+  /// command. If they show that an earlier command requested more cycles of this manifest, warnings
+  /// assume the larger number.
   std::span<const Stage> known = {};
 };
 
@@ -45,8 +46,8 @@ struct Plan {
   std::optional<PackingText> file = {};    ///< the initial grains of all packings
   std::vector<PlannedRun> runs = {};       ///< by variant, then by seed, as the manifest lists them
   std::vector<std::string> warnings = {};  ///< about probable mistakes; one line each
-  /// One line: what was read from the file of grains, or which experiments have the runs that the
-  /// figures use (`of`). "" if there is neither.
+  /// One line. With a file of grains: what was read from the file. With the key `of`: which
+  /// experiments have the runs that the figures use. Otherwise "".
   std::string read = {};
 };
 

@@ -38,7 +38,8 @@ constexpr const char* kColumns[] = {"x", "y", "z", "vx", "vy", "vz"};
 /// quantity, those with the lowest rank are read.
 struct Meaning {
   /// In lower case. If count = 1, the first name means the quantity `first`, the second name means
-  /// the next quantity, and so on. Otherwise all names mean the same.
+  /// the next quantity, and so on. If count = 3, each name means three quantities: `first` and the
+  /// next two.
   string_view names = {};
   int first = kQuantities;  ///< first quantity of the column; kQuantities: unknown
   int count = 1;            ///< number of values in the column
@@ -80,7 +81,7 @@ struct Section {
 };
 
 struct Box {
-  string_view line;            ///< last line with a part of the box
+  string_view line;            ///< from the last line that was read for the box
   Eigen::AlignedBox3d planes;  ///< empty along axes without bounds
   double lean = 0;             ///< largest off-axis component of an edge; 0 if orthogonal
 };
@@ -137,11 +138,12 @@ std::optional<LengthUnit> unit_of(string_view name) {
   return name == "cgs" ? LengthUnit::cm : value_of<LengthUnit>(name);
 }
 
-/// `units`: whether listed names may end in a unit, as in x_m. A name that is not listed can still
-/// be recognized as a diameter, a position or a velocity. Such a diameter is compared with that of
-/// the run; such a position or velocity is refused. Earlier versions ignored such velocities, so
-/// reading them now would change packings with known ids. For the same reason, columns such as x_mm
-/// or "x [m]" are only read if there is no x, x_m or x_d.
+/// `units`: whether a name in kMeanings may end in a unit, as in x_m. Other names may still be
+/// recognized as a diameter, a position or a velocity. A diameter with another name is compared
+/// with the diameter of the run. A position or velocity with another name is refused, not read:
+/// earlier versions ignored velocities with other names, so reading them would change packings with
+/// known ids. Earlier versions also ignored columns such as x_mm or "x [m]". Therefore these
+/// columns are only read if there is no x, x_m or x_d.
 Meaning meaning_of(const Column& column, bool units) {
   static const std::regex with_unit(
       "(.+?)([ _]|[ _]*[\\[(])(d|[mcu]?m|\u00b5m|\u03bcm)(_per_s|/s)?[\\])]?");
@@ -194,8 +196,9 @@ Meaning meaning_of(const Column& column, bool units) {
           .unit = unit};
 }
 
-/// Whether a key, a section or another part of a file with this name concerns the box, a unit,
-/// the kind of the coordinates, the velocities or the shape of the grains.
+/// Whether a part of a file concerns the box, a unit, the kind of the coordinates, the velocities
+/// or the shape of the grains. `name`: the name of the part, such as a key or the heading of a
+/// section.
 bool concerns_grains(string_view name) {
   static const std::regex concerns(
       "(^|[^a-z]|super)lattice|(^|[^a-z]|sim|super)box|origin($|[^a-z])|"
@@ -307,7 +310,7 @@ class PackingReader {
     return found;
   }
 
-  /// The sections of the file. The first line of the file is a heading.
+  /// The sections of the file. The first line always counts as a heading.
   std::vector<Section> sections(bool (*is_heading)(string_view line)) const {
     std::vector<Section> all;
     for (const string_view line : lines_) {
@@ -651,8 +654,8 @@ class PackingReader {
     const std::optional<LengthUnit> unit = unit_of(name);
     if (!unit) {
       refuse_part(text, "units", "cannot be read",
-                  fmt::format("Lengths must be in one of {}, si, cgs, or lj (the unit that the "
-                              "manifest states).",
+                  fmt::format("The unit of lengths must be one of {}, si, cgs, lj. With lj, the "
+                              "manifest must give the unit.",
                               fmt::join(kNames<LengthUnit>, ", ")));
     }
     set_unit(*unit, text);
@@ -720,7 +723,7 @@ class PackingReader {
         continue;
       }
       if (meaning.rank == Meaning::probable && meaning.first != kDiameter) {
-        refuse_part(column.name, "", "cannot be read under this name",
+        refuse_part(column.name, "", "is not a valid name for a position or velocity",
                     remedy_ + " Or remove this column.");
       }
       if (meaning.count != column.count) {
@@ -785,8 +788,8 @@ class PackingReader {
                                 name_of(unit_.value())),
                     "This program needs equal grains. Check the unit. If it is right, set "
                     "`diameter_m` or scale the file. If the column has no diameters or radii, "
-                    "remove it. Continue a packing of unequal grains in LAMMPS (`shearcell export "
-                    "--to lammps`).");
+                    "remove it. To shear unequal grains, use LAMMPS (`shearcell export --to "
+                    "lammps`).");
       }
     }
     if (!holds(uses, kId)) return rows;
@@ -902,7 +905,8 @@ class PackingReader {
     Cell cell;
     cell.width = size.x();
     cell.top = size.y();
-    // Without a box, nothing is periodic. The additional depth keeps periodic images apart.
+    // A Cell is periodic in z, but a packing without a box is not. The additional depth prevents
+    // contacts across the periodic boundary.
     cell.depth = size.z() + (box_ ? 0 : kShallowestCell);
     const Eigen::Matrix3Xd sites = position.colwise() - space.min();
     double largest = 0;
@@ -917,9 +921,9 @@ class PackingReader {
                         second->line,
                         fmt::format("the grain overlaps the grain in line {} by {:.3g} d",
                                     line_of(*first), largest),
-                        fmt::format("At most {:g} d are allowed (`max_overlap_diameters`). Are the "
-                                    "unit of the lengths and the diameter right? If so, let the "
-                                    "grains relax in the program that made the file.",
+                        fmt::format("At most {:g} d are allowed (`max_overlap_diameters`). Check "
+                                    "`diameter_m` and the unit of the lengths. If both are right, "
+                                    "let the grains relax in the program that made the file.",
                                     facts_.largest_overlap));
                   });
     return largest;

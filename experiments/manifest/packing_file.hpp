@@ -27,7 +27,7 @@ double metres(LengthUnit unit, double diameter_m);
 /// The grains of a file, sorted by id, or in the order of the file if it has no ids. Wall grains in
 /// an export of this program are left out.
 struct PackingFile {
-  Eigen::Matrix3Xd position;                 ///< 3 x N [d]; if there is a box, z is inside
+  Eigen::Matrix3Xd position;                 ///< 3 x N [d]; if there is a box, z is wrapped into it
   std::optional<Eigen::Matrix3Xd> velocity;  ///< 3 x N [d/s]
   std::optional<Eigen::AlignedBox3d> box;    ///< [d]; in exports of this program, the wall planes
   LengthUnit unit = LengthUnit::d;           ///< of lengths in the file
@@ -48,8 +48,9 @@ inline constexpr std::size_t kLargestPackingFile = std::size_t{32} << 20;
 
 /// Detects the format of the text and reads it. `file`: the name for messages. Positions are kept,
 /// except that z is wrapped into the box. Throws ManifestError, with line, value and remedy, if the
-/// text is not a packing of facts.grains equal grains inside its box, or if two grains overlap by
-/// more than facts.largest_overlap, also across the periodic boundary of the box.
+/// text cannot be read; if the number of grains is not facts.grains; if the grains are unequal; if
+/// a grain is outside of the box in x or y; or if two grains overlap by more than
+/// facts.largest_overlap, directly or across the periodic boundary of the box.
 PackingFile read_packing(std::string_view text, std::string_view file, const PackingFacts& facts);
 
 /// For example "150 grains, box 6 x 7.2 x 6 d, no velocities; not read: element".

@@ -110,8 +110,8 @@ void fields(Start& start, const auto& visit) {
   visit(start.variant,
         {.name = "variant",
          .doc = "swept values that select the variant of the recorded run, as in `where` or as "
-                "`\"fluid=still\"`. Default: the values of the new run, for all keys that the "
-                "experiments of both runs sweep",
+                "`\"fluid=still\"`. Default: the values of the new run, for each key that is "
+                "swept both in this manifest and in `experiment`",
          .example = "{fluid: still}"});
   visit(start.run, {.name = "checkpoint",
                     .doc = "instead of experiment, seed and cycle: `ID@CYCLE`. ID is at least the "
@@ -141,13 +141,14 @@ void fields(Scale& scale, const auto& visit) {
                               "parameters must act on the grains or on the moving wall. Variants "
                               "that differ only in these parameters share their packings",
                        .example = "{drag_kg_per_s: 1.28e-3}"});
-  visit(scale.start,
-        {.name = "start",
-         .doc = "initial state: either the grains of a file, or the state of a recorded run, to "
-                "which each seed can add different noise. Default: loose grains that settle",
-         .besides = ", or `{file: packing.extxyz}`",
-         .example = "{experiment: drag, variant: \"fluid=still\", seed: 3, cycle: 10, noise_d: "
-                    "1.0e-13}"});
+  visit(
+      scale.start,
+      {.name = "start",
+       .doc = "initial state: the grains of a file, or the state of a recorded run. Each seed can "
+              "add different noise to a recorded state. Default: loose grains that settle",
+       .besides = ", or `{file: packing.extxyz}`",
+       .example = "{experiment: drag, variant: \"fluid=still\", seed: 3, cycle: 10, noise_d: "
+                  "1.0e-13}"});
   visit(scale.seeds,
         {.name = "seeds",
          .doc = "`6` means the seeds 1 to 6. Other seeds: `2001-2040` or `[1-6, 9]`. Default 1",
@@ -155,9 +156,9 @@ void fields(Scale& scale, const auto& visit) {
   visit(scale.checkpoints,
         {.name = "checkpoints",
          .doc = "`every_cycles`: number of cycles between checkpoints, default 1; the last cycle "
-                "always has a checkpoint. `phases`: fractions of a cycle, whose duration includes "
-                "the pause. At these fractions, the cycle after each checkpoint of `every_cycles` "
-                "has further checkpoints. Default: none",
+                "always has a checkpoint. `phases`: in the cycle after each checkpoint of "
+                "`every_cycles`, further checkpoints are written at these fractions of the cycle. "
+                "The pause is a part of the cycle. Default: none",
          .example = "{every_cycles: 1, phases: [0.25, 0.5, 0.75]}"});
   visit(scale.until,
         {.name = "until",
@@ -223,9 +224,9 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
   visit(plot.x,
         {.name = "x",
          .doc = "`cycle` (default), a measure, a parameter, or an expression such as `1/period_s`. "
-                "If `x` has one value for each run, `y` is the value at `at_cycle`. If `x` is a "
-                "measure of whole runs, such as `core_time_s`, all runs of a variant share one "
-                "point, at the mean of `x`",
+                "If `x` has one value for each run, `y` is the value at `at_cycle`. If this `x` "
+                "is a measure, such as `core_time_s`, each variant has one point, at the mean of "
+                "`x` over the runs of the variant",
          .names = can_be_x,
          .terms = terms});
   visit(plot.where,
@@ -275,8 +276,8 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
          .example = "{still: {label: $v_f = 0$, colour: blue, marker: open_circle}}"});
   visit(plot.published,
         {.name = "published",
-         .doc = "published numbers that the plot shows: each has a `source` and either a `value` "
-                "with an `error`, or `points` [x, y] or [x, y, error]",
+         .doc = "published numbers that the plot shows. Each has a `source`, and either a `value` "
+                "with an `error` or a list `points`, whose items are [x, y] or [x, y, error]",
          .example = "[{label: Jin et al., value: 0.646, error: 0.001, source: S C}]"});
   visit(plot.also, {.name = "also",
                     .doc = "with `show: mean`: further columns of the CSV file, as a list of "
@@ -319,11 +320,12 @@ void fields(Placed<ClaimSpec>& claim, const auto& visit) {
   visit(claim.id, {.name = "name", .doc = "older name of the key `id`"});
   visit(claim.figure,
         {.name = "figure", .doc = "see `figure` of a plot; default: the first part of `id`"});
-  visit(claim.compare, {.name = "compare",
-                        .doc = "required; like `y` of a plot, except measures that are curves",
-                        .names = can_be_compared,
-                        .terms = terms,
-                        .required = true});
+  visit(claim.compare,
+        {.name = "compare",
+         .doc = "required; a measure or an expression, as in `y` of a plot, but no curve",
+         .names = can_be_compared,
+         .terms = terms,
+         .required = true});
   visit(claim.estimator, {.name = "estimator",
                           .doc = "quantity to estimate; by default, it follows from the other keys",
                           .names = estimators});
@@ -344,8 +346,8 @@ void fields(Placed<ClaimSpec>& claim, const auto& visit) {
                 "`ID@KEY=VALUE`. `{KEY}` in `statement` is replaced by the value",
          .names = can_be_by});
   visit(claim.between, {.name = "between",
-                        .doc = "two selections of swept values, one for each side. The difference "
-                               "is the first side minus the second side",
+                        .doc = "the two sides that the claim compares, each selected by swept "
+                               "values. The difference is the first side minus the second side",
                         .example = "[{fluid: still}, {fluid: cell}]"});
   visit(claim.published,
         {.name = "published",
@@ -382,7 +384,8 @@ void fields(Placed<ClaimSpec>& claim, const auto& visit) {
   visit(claim.reaches, {.name = "reaches",
                         .range = {-1e15, 1e15},
                         .doc = "instead of `at_cycle`: a value of the measure. The claim compares "
-                               "the first cycles at which the runs of each side reach this value"});
+                               "the two sides of `between` by the first cycle at which each run "
+                               "reaches this value"});
   visit(claim.is, {.name = "is",
                    .doc = "`same` (default): the difference is within the margin; `higher`, "
                           "`lower`: the first side is higher or lower by more than the margin"});
@@ -494,7 +497,8 @@ string shown(const Node& node) {
   return node.quoted ? fmt::format("\"{}\"", printable(node.text)) : printable(node.text);
 }
 
-// Returns "It takes `[1, 15]`." with the example of the key, or else with the allowed values.
+// Returns a sentence with the example of the key, such as "It takes `[1, 15]`.". If there is no
+// example, the sentence gives the allowed values.
 string remedy_of(const Field& about) {
   return about.example.empty() ? fmt::format("It takes {}.", expected_values(about))
                                : fmt::format("It takes `{}`{}.", about.example, about.besides);
@@ -536,7 +540,7 @@ struct Reader {
       return reject(in, "is an empty map", remedy);
     reject_value(in, fmt::format("is not {}", wanted), remedy);
   }
-  // Reports a problem at the value, or at the key, without quoting the value.
+  // reject() reports a problem at the value, reject_key() at the key. Neither quotes the value.
   void reject(const Node& in, const string& problem, const string& remedy) {
     problems.add(in.at, in.path, problem, "", remedy);
   }
@@ -640,8 +644,8 @@ struct Reader {
     return !(of_run && of_checkpoint);
   }
 
-  // Adds to `where` a parameter with its value, its list of values or its range. The keys
-  // `experiment` and `cycle` are also allowed: they select runs of an experiment, and checkpoints.
+  // Adds to `where` a parameter with its value, its list of values or its range. Two other keys are
+  // allowed: `experiment` selects runs of an experiment, `cycle` selects checkpoints.
   void read_where(const Node& in, json& where) {
     const std::array others = {Field{.name = "experiment", .names = experiments},
                                Field{.name = "cycle", .range = kCycles}};
@@ -671,8 +675,8 @@ struct Reader {
     }
   }
 
-  // Reads a selection such as "fluid=still,amplitude_rad=0.05" from the key or, if `text` is true,
-  // from the value.
+  // Reads a selection such as "fluid=still,amplitude_rad=0.05". The selection is the key of the
+  // node or, if `text` is true, the value of the node.
   json read_selector(const Node& in, bool text = false) {
     json where = json::object();
     const string& whole = text ? in.text : in.key;
@@ -751,7 +755,7 @@ struct Reader {
       value = about.folds ? boost::algorithm::trim_fill_copy(text, " ") : text;
       if (!in.is_scalar() || value.size() > about.longest || value.find('\n') != value.npos) {
         return reject_type(in, "a plain text",
-                           fmt::format("It takes one {} of at most {} bytes.",
+                           fmt::format("Write one {} of at most {} bytes.",
                                        about.folds ? "text" : "line", about.longest));
       }
       const bool needs_text = about.name == "cannot_be_decided" || about.name == "file";
@@ -769,8 +773,8 @@ struct Reader {
     }
   }
 
-  // Reads a pair: the sides of a claim, the first and last cycle, or the ends of a window. The
-  // key `at_cycle`, whose Field has no example, has one value: the first and also the last cycle.
+  // Reads a pair: the sides of a claim, the first and last cycle, or the ends of a window. A
+  // key without an example (`at_cycle`) has one value, which is both the first and the last cycle.
   template <class T>
   void read(const Node& in, const Field& about, std::array<T, 2>& both) {
     constexpr bool sides = std::is_same_v<T, json>, whole = std::is_integral_v<T>;
@@ -815,12 +819,13 @@ struct Reader {
   void read(const Node& in, const Field& about, std::vector<T>& values) {
     values.clear();  // a scale starts with a copy of the top level's list
     Field item = with_type<T>(about);
-    // An item has the example of the list without brackets, or no example if it is a number.
+    // The example of an item is the example of its list, without the brackets. Numbers have none.
     item.example = item.example.substr(1, std::is_arithmetic_v<T> ? 0 : item.example.size() - 2);
     for (const Node& each : items_of(in, about.example)) read(each, item, values.emplace_back());
   }
 
-  // Reads the styles in `series`. name_series() reads the keys of `series`, which select curves.
+  // Reads the values of the map `series`, which are styles. name_series() reads the keys of the
+  // map.
   void read(const Node& in, const Field& about, std::vector<SeriesSpec>& series) {
     if (!in.is_map()) return reject_type(in, "a map", remedy_of(about));
     for (const Node& part : in.parts) {
@@ -965,7 +970,7 @@ struct Reader {
       }
       const bool length = is_length(field->name);
       if (!field->identity.distinguishes_runs() && !(about.name == "zip" && length)) {
-        reject_key(part, "cannot be swept: runs with different values would be the same run",
+        reject_key(part, "cannot be swept: runs that differ only in this key have the same id",
                    length ? "Set it in `base` or in a scale, or zip it with a swept parameter."
                           : "Set it in `base` or in a scale.");
         continue;
@@ -1061,7 +1066,7 @@ struct Reader {
     const auto is_measure = [](const Node& part) { return part.key != "extra_cycles"; };
     const auto measure = std::ranges::find_if(in.parts, is_measure);
     if (std::ranges::count_if(in.parts, is_measure) != 1) {
-      return reject(in, "does not name one measure", remedy_of(about));
+      return reject(in, "does not name exactly one measure", remedy_of(about));
     }
     until.measure = measure->key;
   }
@@ -1104,7 +1109,8 @@ struct Reader {
       const auto sources = go_with.find(part.key);
       const auto is_given = [&](string_view key) { return in.find(key) != nullptr; };
       if (sources == go_with.end() || std::ranges::any_of(sources->second, is_given)) continue;
-      reject_key(part, fmt::format("can only be used with {}", fmt::join(sources->second, " or ")),
+      reject_key(part,
+                 fmt::format("can only be used with `{}`", fmt::join(sources->second, "` or `")),
                  "Leave it out.");
     }
     const Node* checkpoint = in.find("checkpoint");
@@ -1155,7 +1161,8 @@ struct Reader {
                     "As x, use `cycle`, a parameter, or a measure with one value for each run.");
     const bool of_runs = plot.show == Show::traces || plot.show == Show::scatter;
     reject_if(!of_runs || of_run, cycles,
-              "can only be used with traces or scatter, and with an x that changes during a run",
+              "can only be used with `show: traces` or `scatter`, and with an x that changes "
+              "during a run",
               "Use `show: traces`, and `cycle` or a measure as x.");
     reject_if(!plot.figure.empty(), cycles, "cannot be used with figure", "Leave out `figure`.");
     if (also != nullptr && (is_curve || plot.show != Show::mean)) {
@@ -1243,9 +1250,9 @@ struct Reader {
               "Give the published number as `value`.");
     reject_if(claim.where.contains("cycle"), in.find("where"), "selects checkpoints",
               "Use `at_cycle` or `cycles`.");
-    reject_if(published == nullptr && !of_all, in.find("of"), "can only be used with published",
+    reject_if(published == nullptr && !of_all, in.find("of"), "can only be used with `published`",
               "Use `between` for two variants.");
-    reject_if(in.find("between") == nullptr, reaches, "can only be used with between",
+    reject_if(in.find("between") == nullptr, reaches, "can only be used with `between`",
               "A waiting time can only be compared with another waiting time.");
     claim.relative = relative != nullptr;
     reject_if(compares_waits(claim), relative, "cannot be used with waiting times",

@@ -129,7 +129,7 @@ std::span<const Field> schema() {
           "volume fraction at which N grains fill the nominal cell; fixes L"),
       row<&P::wall_grain_area_fraction>(
           "wall_grain_area_fraction", "", "1", {0, 0.53}, kPrepare,
-          "fraction of the area of a rough wall that wall grains cover; random sequential "
+          "fraction of a rough wall's area that is covered by wall grains; random sequential "
           "addition jams at 0.547"),
       row<&P::wall_grain_recess_diameters>(
           "wall_grain_recess_diameters", "", "d", {0, 0.5}, kPrepare,
@@ -195,7 +195,7 @@ std::span<const Field> schema() {
       row<&P::engine>("engine", "", "", {}, {.stage = StageKind::shear, .omitted_at = "shearcell"},
                       "program that computes the shear. A run with LAMMPS has a different id and "
                       "different rounding errors. shearcell always computes the settling"),
-      // A shear that begins with a recorded state.
+      // Start from a recorded state.
       row<&P::start_seed>("start_seed", "", "1", {0, 9007199254740991},
                           {.stage = StageKind::shear, .selects_parent = true},
                           "with `start`: the seed of the recorded run"),

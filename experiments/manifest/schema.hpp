@@ -20,7 +20,7 @@ namespace shearcell {
 /// How a parameter enters the identity of a run. A parameter of `prepare` enters the records of all
 /// stages, since settling comes first; any other parameter enters the record of its own stage only.
 struct Identity {
-  /// The first stage that the parameter affects. Empty: no id depends on the parameter.
+  /// The first stage whose record has an entry for the parameter. Empty if no record has one.
   std::optional<StageKind> stage = {};
   std::optional<ProtocolKind> under = {};  ///< recorded only for this protocol; empty: for all
   /// The record omits the parameter if its value_text() is this text. All runs that are older than
@@ -29,7 +29,8 @@ struct Identity {
   /// Every new record holds this value, whatever the value of the parameter, because the parameter
   /// is no longer part of the identity. Records of older runs may hold other values.
   std::string_view recorded_as = {};
-  /// Records hold the id of the parent stage that the parameter selects, not the parameter itself.
+  /// True if the parameter selects the parent stage. Records then hold the id of this stage instead
+  /// of the parameter.
   bool selects_parent = false;
 
   /// Whether runs with different values of the parameter have different ids.

@@ -55,8 +55,8 @@ void require_same_cell(const Manifest& manifest, const Scale& scale, const Varia
   }
 }
 
-/// States the nominal packing fraction with which the cell is `width` [d] wide and deep, if this
-/// fraction is in range. A cell with a higher fraction is narrower.
+/// Advice on how to make the cell `width` [d] wide and deep: the nominal packing fraction to write,
+/// or another file if that fraction is out of range. (A higher fraction makes the cell narrower.)
 std::string remedy_for_width(const Parameters& p, double width) {
   Geometry shape = geometry(p);
   const Range& range = find_field("nominal_packing_fraction")->range;
@@ -77,11 +77,10 @@ std::string remedy_for_width(const Parameters& p, double width) {
 /// Places the grains between the wall planes of the cell. Throws ManifestError if the box or the
 /// grains do not fit the width and depth of the cell.
 ///
-/// Without a box, the outermost grains may overlap the side walls as deeply as the most deeply
-/// overlapping pair of grains in the file: the packing may be under load, or relax while it
-/// settles. Overlaps of `usual_overlap` with the walls are always allowed, because the deepest
-/// contact under load can be at a wall. Deeper overlaps mean that the cell is narrower than the
-/// packing.
+/// Without a box, overlaps with the side walls are allowed up to the largest overlap of two grains
+/// in the file. Grains overlap if the packing is under load, or if it has not relaxed yet. Overlaps
+/// up to `usual_overlap` with the walls are always allowed, because the deepest contact under load
+/// can be at a wall. Deeper overlaps mean that the cell is narrower than the packing.
 State state_in(const Cell& cell, const PackingFile& grains, const std::string& path,
                const Parameters& p) {
   constexpr double tolerance = 1e-6;  // relative to the width
@@ -105,7 +104,8 @@ State state_in(const Cell& cell, const PackingFile& grains, const std::string& p
                        axis == 0 ? "wide (x)" : "deep (z)", room),
            "",
            fmt::format("Are the lengths in {}? If not, write the unit in the file (columns x_mm, "
-                       "y_mm, z_mm; or length_unit=mm) or in the manifest (`unit: mm`). If so: {}",
+                       "y_mm, z_mm; or length_unit=mm) or in the manifest (`unit: mm`). If the "
+                       "unit is right: {}",
                        name_of(grains.unit), remedy_for_width(p, size[axis])));
   }
   const bool from_below = cell.moving == MovingWall::top;  // the bottom plane is fixed

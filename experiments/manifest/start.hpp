@@ -18,7 +18,8 @@
 namespace shearcell {
 
 /// Returns the run in `known` from which the variant starts. If several runs fit the key `start`,
-/// selects the run that agrees with the variant in each key that the experiments of both sweep.
+/// selects the run that has the variant's value of each key that is swept both in `manifest` and
+/// in the run's experiment.
 /// Throws ManifestError if no run or several runs remain, if the run has no checkpoint at the start
 /// cycle, or if the cell or the grains of the run differ from those of the variant.
 const Stage& recorded_run(const Manifest& manifest, const Scale& scale, const Variant& variant,

@@ -36,7 +36,7 @@ std::vector<std::string> swept_keys(const std::vector<json>& variants) {
   return keys;
 }
 
-/// The keys whose values remain different when they are rounded to four digits.
+/// The keys for which rounding to four digits does not make two different values equal.
 std::set<std::string> keys_in_brief(const std::vector<std::string>& keys,
                                     const std::vector<json>& variants) {
   std::set<std::string> found;
@@ -108,7 +108,7 @@ Parts parts_of(const std::string& list) {
   return parts;
 }
 
-/// Whether `parts` has all `wanted` parts. Numbers may differ as in is_within().
+/// Whether `parts` has all `wanted` parts. is_within() compares the values.
 bool has_all(const Parts& parts, const Parts& wanted) {
   return std::ranges::all_of(wanted, [&](const auto& want) {
     return std::ranges::any_of(parts, [&](const auto& part) {

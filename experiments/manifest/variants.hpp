@@ -44,15 +44,15 @@ class Filter {
   explicit Filter(const std::vector<std::string>& wanted);
   explicit Filter(const std::vector<std::uint64_t>& wanted);
 
-  /// Whether the value is selected. The parts of `name`, the display name of the value, count as
-  /// parts of the value. The value must fit at least one text of each key: the texts "a=1", "a=2"
-  /// and "b=3" select values with b=3 that also have a=1 or a=2. Returns true if no texts were
-  /// given.
+  /// Whether the texts select the value. The parts of `name`, the display name of the value, count
+  /// as parts of the value. If several texts have the same keys, the value must fit at least one of
+  /// them: "a=1", "a=2" and "b=3" select values with b=3 that also have a=1 or a=2. Without texts,
+  /// every value is selected.
   bool passes(const std::string& value, const std::string& name = "");
-  /// The first of the given texts that none of the values in seen() fits, or null.
+  /// The first of the given texts that selects none of the values in seen(), or null.
   const std::string* unfound() const;
-  /// The values that passes() was called with, each once, in order. A value is followed by its
-  /// display name if the name has parts that the value lacks.
+  /// The values that passes() was called with, each once, in order. If the display name of
+  /// a value has additional parts, the name follows as the next element.
   const std::vector<std::string>& seen() const { return seen_; }
 
  private:
@@ -76,10 +76,11 @@ bool has_values(const nlohmann::json& variant, const nlohmann::json& where);
 /// Variant::swept of each variant.
 std::vector<nlohmann::json> swept_in(std::span<const Variant> variants);
 
-/// Returns the display name of each variant (swept key -> value; variants may be equal). The name
-/// begins with the labels, the label with the most keys first. A label replaces its keys. Other
-/// keys follow if they distinguish the variants: "fluid at rest, A=0.05 rad". Without a sweep, the
-/// name is "no sweep". (Ids and CSV use Variant::name.)
+/// Returns the display name of each variant. A variant is an object of swept keys and values; some
+/// variants in the list may be equal. The name begins with the labels that apply to the variant
+/// (see selects()), the label with the most keys first. A label replaces the keys in its `where`.
+/// Other keys follow if they distinguish the variants: "fluid at rest, A=0.05 rad". Without a
+/// sweep, the name is "no sweep". (Ids and CSV use Variant::name.)
 std::map<nlohmann::json, std::string> variant_names(const std::vector<nlohmann::json>& variants,
                                                     std::span<const VariantLabel> labels);
 

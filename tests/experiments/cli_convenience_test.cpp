@@ -46,7 +46,8 @@ TEST_F(Convenience, PlanAndRunSayWhatIsReadOfAFileOfGrains) {
   EXPECT_TRUE(has(json({"plan", "m.yaml", "--json"}).at("notes").dump(), says));
   EXPECT_TRUE(has(expect(0, {"run", "m.yaml", "-q"}).out, says));
   write("grains.csv", "x,y,z,v_x\n1,1,1,0\n3,1,1,0\n");
-  expect_refused({"run", "m.yaml"}, {"grains.csv:1:7: cannot be read under this name (got v_x)"});
+  expect_refused({"run", "m.yaml"},
+                 {"grains.csv:1:7: is not a valid name for a position or velocity (got v_x)"});
 }
 
 TEST_F(Convenience, NewWritesAManifestThatExpandsAndNamesEveryKey) {

@@ -222,10 +222,9 @@ TEST(Expand, AZipHasANumberOfSeedsForEachVariant) {
   EXPECT_EQ(plan.runs[0].place.swept, (nlohmann::json{{"amplitude_rad", 0.05}}));
   EXPECT_EQ(expand(manifest, {.seeds = 2}).runs.size(), 4U) << "of each variant";
   EXPECT_EQ(expand(manifest, {.only_seeds = {8}}).runs.size(), 1U);
-  EXPECT_EQ(
-      message_of<ManifestError>([&] { parse(text + "scales: {desk: {seeds: 2}}\n"); }),
-      "test.yaml:3:54: seeds: are fewer than a number in `looks` or in the sweep (got 3). Write "
-      "`seeds: 3`, or list this many seeds.");
+  EXPECT_EQ(message_of<ManifestError>([&] { parse(text + "scales: {desk: {seeds: 2}}\n"); }),
+            "test.yaml:3:54: seeds: are fewer than `looks` or the sweep needs (got 3). Write "
+            "`seeds: 3`, or list this many seeds.");
 }
 
 TEST(Expand, TakesOnlyTheRequestedVariants) {
@@ -258,8 +257,8 @@ TEST(Expand, RejectsOptionsThatDoNotFit) {
             "test.yaml: scale: is unknown, the nearest is smoke (got smok). The manifest has "
             "smoke, paper; --scale selects one of them.");
   EXPECT_EQ(message(manifest, {.scale = "smoke", .seeds = 2}),
-            "test.yaml: seeds: the manifest lists only 1 seed (got 2). List more seeds, or give a "
-            "number of seeds.");
+            "test.yaml: seeds: the manifest lists only 1 seed (got 2). List more seeds, or write "
+            "only their number, as in `seeds: 6`.");
   EXPECT_NE(message(manifest, {.scale = "smoke", .seeds = 0}), "");
   EXPECT_NE(message(manifest, {.scale = "smoke", .cycles = 1'000'000'000}), "");
   EXPECT_NE(message(drag(), {.scale = "smoke", .seeds = 9'999}), "");

@@ -78,11 +78,11 @@ const std::string kTwoUnits =
     " Write all lengths in one unit, and state it in the file or as `unit` in the manifest.";
 const std::string kEqual =
     " This program needs equal grains. Check the unit. If it is right, set `diameter_m` or scale "
-    "the file. If the column has no diameters or radii, remove it. Continue a packing of unequal "
-    "grains in LAMMPS (`shearcell export --to lammps`).";
+    "the file. If the column has no diameters or radii, remove it. To shear unequal grains, use "
+    "LAMMPS (`shearcell export --to lammps`).";
 const std::string kDeep =
-    "At most 0.25 d are allowed (`max_overlap_diameters`). Are the unit of the lengths and the "
-    "diameter right? If so, let the grains relax in the program that made the file.";
+    "At most 0.25 d are allowed (`max_overlap_diameters`). Check `diameter_m` and the unit of "
+    "the lengths. If both are right, let the grains relax in the program that made the file.";
 
 const std::vector<BadPacking> kBad = {
     {"Empty", "a.xyz", "", "a.xyz: is empty. " + kFormats},
@@ -103,9 +103,8 @@ const std::vector<BadPacking> kBad = {
     {"UnitContradicted", "a.csv", "x_m,y_m,z_m\n1,1,1\n",
      "a.csv:1:1: gives lengths in m, but the manifest has lengths in d." + kTwoUnits},
     {"UnitUnknown", "a.xyz", xyz("length_unit=nm", "A 1 1 1\nA 3 3 3\n"),
-     "a.xyz:2:13: units: cannot be read (got nm). Lengths must be in one of m, d, mm, cm, "
-     "um, "
-     "si, cgs, or lj (the unit that the manifest states)."},
+     "a.xyz:2:13: units: cannot be read (got nm). The unit of lengths must be one of m, d, "
+     "mm, cm, um, si, cgs, lj. With lj, the manifest must give the unit."},
     {"UnitsMixed", "a.csv", "x_m,y_m,z_d\n1,1,1\n",
      "a.csv:1:9: is in another unit than the earlier columns (got z_d). Write all lengths in m "
      "(x_m) or all in d (x_d).",
@@ -206,7 +205,8 @@ const std::vector<BadPacking> kBad = {
     {"DataNotANumber", "a.data", data(kBounds, "Atoms # atomic\n\n1 1 1 1 1\n2 1 3 3 3,5\n"),
      "a.data:12:9: z: is not a number between -1e100 and 1e100 (got 3,5)." + kNoNumber},
     {"DumpScaled", "a.dump", dump("id type xs ys zs", "1 1 0.1 0.1 0.1\n2 1 0.3 0.3 0.3\n"),
-     "a.dump:9:21: cannot be read under this name (got xs). " + kDump + kOrRemoveColumn},
+     "a.dump:9:21: is not a valid name for a position or velocity (got xs). " + kDump +
+         kOrRemoveColumn},
     {"DumpOfEdgeVectors", "a.dump",
      "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS abc origin ff ff pp\n9 0 0 0\n",
      "a.dump:5:1: cannot be read in this form (got ITEM: BOX BOUNDS abc origin ff ff pp). " +
@@ -289,8 +289,8 @@ TEST(PackingFile, LengthsMayBeInMillimetresCentimetresOrMicrometres) {
 
 const std::string kKeys = kXyz + kOrRemove;
 const std::string kLammpsUnits =
-    " Lengths must be in one of m, d, mm, cm, um, si, cgs, or lj (the unit that the manifest "
-    "states).";
+    " The unit of lengths must be one of m, d, mm, cm, um, si, cgs, lj. With lj, the manifest must "
+    "give the unit.";
 const std::string kOneUnit = "Write all lengths in m (x_m) or all in d (x_d).";
 const std::string kUpright =
     "Use a rectangular box. A sheared cell is rectangular at the end of a cycle.";
@@ -366,11 +366,12 @@ const std::vector<Parts> kParts = {
     {"a.xyz", xyz("Properties=species:S:1:forces:R:3:pos:R:3", "A 7 7 7 1 1 1\nA 8 8 8 3 3 3\n"),
      kTwo + "; not read: species, forces"},
     {"a.xyz", with_columns("momenta:R:3", "1.00800000 0.00000000 0.00000000"),
-     ":2:60: cannot be read under this name (got momenta). " + kXyz + kOrRemoveColumn},
+     ":2:60: is not a valid name for a position or velocity (got momenta). " + kXyz +
+         kOrRemoveColumn},
     {"a.xyz", with_columns("velo:R:3:momenta:R:3", "1 0 0 1 0 0"),
      kBoxed + "velocities; not read: species, momenta"},
     {"a.xyz", with_columns("V:R:3", "1 0 0"),
-     ":2:60: cannot be read under this name (got V). " + kXyz + kOrRemoveColumn},
+     ":2:60: is not a valid name for a position or velocity (got V). " + kXyz + kOrRemoveColumn},
     {"a.xyz", with_columns("angular_velocity:R:3:Omega:R:3", "1 0 0 1 0 0"),
      kStill + "; not read: species, angular_velocity, Omega"},
     {"a.xyz", with_columns("Radius:R:1:magmoms:R:1", ".5 1"),
@@ -384,7 +385,8 @@ const std::vector<Parts> kParts = {
     {"a.xyz", with_columns("particle_size:R:1", "0.9"),
      ":3:9: particle_size: is not the diameter of the manifest's grains, 1 d (got 0.9)." + kEqual},
     {"a.xyz", xyz("Properties=species:S:1:positions:R:3", "A 1 1 1\nA 3 3 3\n"),
-     ":2:24: cannot be read under this name (got positions). " + kXyz + kOrRemoveColumn},
+     ":2:24: is not a valid name for a position or velocity (got positions). " + kXyz +
+         kOrRemoveColumn},
     // LAMMPS data.
     {"a.data", titled("packing, all lengths in units of nm"),
      ":1:34: units: cannot be read (got nm)." + kLammpsUnits},
@@ -444,11 +446,12 @@ const std::vector<Parts> kParts = {
     {"a.dump", dump("id x y z c_rad", "1 1 1 1 0.5\n2 3 3 3 0.7\n"),
      ":11:9: c_rad: is not the radius of the manifest's grains, 0.5 d (got 0.7)." + kEqual},
     {"a.dump", dump("id x y z v_x", "1 1 1 1 1\n2 3 3 3 1\n"),
-     ":9:22: cannot be read under this name (got v_x). " + kDump + kOrRemoveColumn},
+     ":9:22: is not a valid name for a position or velocity (got v_x). " + kDump + kOrRemoveColumn},
     {"a.dump", dump("id x y z f_vel[1]", "1 1 1 1 1\n2 3 3 3 1\n"),
-     ":9:22: cannot be read under this name (got f_vel[1]). " + kDump + kOrRemoveColumn},
+     ":9:22: is not a valid name for a position or velocity (got f_vel[1]). " + kDump +
+         kOrRemoveColumn},
     {"a.dump", dump("id x y z vel", "1 1 1 1 1\n2 3 3 3 1\n"),
-     ":9:22: cannot be read under this name (got vel). " + kDump + kOrRemoveColumn},
+     ":9:22: is not a valid name for a position or velocity (got vel). " + kDump + kOrRemoveColumn},
     {"a.dump", dump("id x y z radius diameter d_radius", "1 1 1 1 .5 1 7\n2 3 3 3 .5 1 7\n"),
      kStill + "; not read: d_radius"},
     {"a.dump", dump("id x y z radius diameter", "1 1 1 1 .5 1\n2 3 3 3 .5 2\n"),
@@ -472,16 +475,20 @@ const std::vector<Parts> kParts = {
     {"a.csv", csv("Vx (mm/s)", "1"),
      ":1:7: is in another unit than the earlier columns (got Vx (mm/s)). " + kOneUnit},
     {"a.csv", csv("vx_km_per_s", "1"),
-     ":1:7: cannot be read under this name (got vx_km_per_s). " + kCsv + kOrRemoveColumn},
+     ":1:7: is not a valid name for a position or velocity (got vx_km_per_s). " + kCsv +
+         kOrRemoveColumn},
     {"a.csv", csv("x_mm", "7"), kTwo + "; not read: x_mm"},
     {"a.csv", csv("Diameter [d]", "1"), kTwo},
     {"a.csv", "x_nm,y_nm,z_nm\n1,1,1\n3,3,3\n", ":1:1: the column x is missing. " + kCsv},
     {"a.csv", csv("velocity:0", "1"),
-     ":1:7: cannot be read under this name (got velocity:0). " + kCsv + kOrRemoveColumn},
+     ":1:7: is not a valid name for a position or velocity (got velocity:0). " + kCsv +
+         kOrRemoveColumn},
     {"a.csv", csv("momentum_x", "1"),
-     ":1:7: cannot be read under this name (got momentum_x). " + kCsv + kOrRemoveColumn},
+     ":1:7: is not a valid name for a position or velocity (got momentum_x). " + kCsv +
+         kOrRemoveColumn},
     {"a.csv", csv("Velocity.X", "1"),
-     ":1:7: cannot be read under this name (got Velocity.X). " + kCsv + kOrRemoveColumn},
+     ":1:7: is not a valid name for a position or velocity (got Velocity.X). " + kCsv +
+         kOrRemoveColumn},
     {"a.csv", csv("Points:0", "7"), kTwo + "; not read: Points:0"},
     {"a.csv", csv("radius_of_curvature,diameter ratio", "7,7"),
      kTwo + "; not read: radius_of_curvature, diameter ratio"},
