@@ -90,8 +90,8 @@ inline constexpr const char* no_group =
 /// The name of a column, for use in sentences: Measure::words, or the column's text.
 std::string words_of_column(const std::string& column);
 
-/// An empty table for the numbers that enter a verdict. It has the columns group (the run's
-/// variant), seed, packing, and then `columns`.
+/// An empty table for the numbers that enter a verdict. Its columns are `group` (the run's
+/// variant), `seed`, `packing`, and those in `columns`.
 Table entered_with(const std::vector<TableColumn>& columns);
 /// Adds a row for the run to `entered`. `values`: the values of the columns after `packing`.
 void enter(const FrameRun& run, const TableRow& values, Table& entered);

@@ -44,9 +44,10 @@ struct DensityBin {
 /// are not independent, because one crystallite is seen at many cycles.
 std::vector<DensityBin> density(std::span<const std::vector<double>> groups, std::size_t bins);
 
-/// A nucleation rate is a number of events per cycle and per grain of a region. The rate depends on
-/// the phi of the same region. Its grains are at least 1.5 d (interior) or 4 d (core) from the wall
-/// surfaces (packing_fraction.hpp). The cycle of the onset does not depend on the region.
+/// The region of a nucleation rate. The rate is the number of events per cycle and per grain of the
+/// region, as a function of the phi of the region. The grains of the region are at least 1.5 d
+/// (interior) or 4 d (core) from the wall surfaces (packing_fraction.hpp). The cycle of the onset
+/// is the same for both regions.
 enum class Region { interior, core };
 /// Name of the measure that counts the grains of the region.
 std::string grains_of(Region region);

@@ -110,8 +110,8 @@ WaveVector largest_components(const InteriorRegion& region) {
 
 constexpr auto kWaveBins = static_cast<std::size_t>(largest_wave_per_d / wave_bin_per_d);
 
-// Calls visit(bin, n) for wave vectors k with |k| < largest_wave_per_d, ordered by n, the
-// components of k. Only one of k and -k is visited.
+// Calls visit(bin, n) for each wave vector k with |k| < largest_wave_per_d. n has the integer
+// components of k, and the calls are in the order of n. Only one of k and -k is visited.
 template <class Visit>
 void for_each_wave_vector(const InteriorRegion& region, const WaveVector& most,
                           const Visit& visit) {

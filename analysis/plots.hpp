@@ -29,8 +29,8 @@ enum class LogAxes : std::uint8_t { none, x, y, xy };
 template <>
 inline constexpr auto kNames<LogAxes> = names_in_order<LogAxes>("none", "x", "y", "xy");
 
-/// Label, colour and symbol of the curve whose variants have the parameter values in `where`. An
-/// empty label, colour or marker follows from the swept values (styles.hpp).
+/// Label, colour and symbol (`marker`) of the curve whose variants have the parameter values in
+/// `where`. If one of these is empty, it is chosen from the swept values (styles.hpp).
 struct SeriesSpec {
   nlohmann::json where;     ///< parameter -> value, for all variants of the curve
   std::string column = {};  ///< instead of `where`: the name of a column, if `y` has several

@@ -133,9 +133,9 @@ std::string unfit(const std::string& text, Number low, Number high) {
   const bool plain = value && (!whole || text[0] != '0' || text.size() == 1);
   if (plain && *value >= low && *value <= high) return "";
   const bool open = high == std::numeric_limits<Number>::max();
-  return fmt::format("must be a {}number from {} {} decimal digits (got '{}')",
-                     whole ? "whole " : "", low,
-                     open ? "upwards, in" : fmt::format("to {} in", high), text);
+  return fmt::format(
+      "must be a {}number {}, in decimal digits (got '{}')", whole ? "whole " : "",
+      open ? fmt::format("of at least {}", low) : fmt::format("from {} to {}", low, high), text);
 }
 
 template <class Value>

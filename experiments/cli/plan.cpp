@@ -168,8 +168,8 @@ void note_looks(const std::vector<Plan>& plans, const std::vector<Line>& lines, 
           plan.manifest.experiment, *next, counted(scale.seeds.values.size(), "seed"),
           left_at(*next),
           powers.empty()
-              ? "Until `figures` has measured some runs, `plan` cannot estimate the probability "
-                "that this look decides a claim"
+              ? "The probability that this look decides a claim is unknown: `figures` has measured "
+                "too few runs, or all claims are decided"
               : fmt::format("Probability that a claim is decided at or before this look, if the "
                             "present estimates are the true values: {}",
                             fmt::join(powers, ", "))));

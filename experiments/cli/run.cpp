@@ -159,7 +159,8 @@ CampaignResult compute_rest(Store& store, const RunOptions& options, Context& co
 }
 
 // Returns the folder in which the task computes: its store, or if `scratch` is set, a copy on the
-// node's disk. The copy is named after submission and task, so that a restarted task finds it.
+// node's disk. The name of the copy contains the ids of the submission and the task, so that a
+// restarted task finds the copy.
 fs::path working_folder(const fs::path& task, const std::string& scratch) {
   if (scratch.empty()) return task;
   const Store sound(task, Access::write);  // throws before copying if the store is unusable

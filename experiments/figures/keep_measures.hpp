@@ -17,7 +17,8 @@ namespace shearcell {
 ///
 /// If a measure of a checkpoint could not be computed, the checkpoint is removed from `records`, so
 /// that its file is kept; the outcome gives the reason. Exception: if the measure needs an earlier
-/// checkpoint that is already pruned, the later checkpoint stays in `records`. If measures cannot
+/// checkpoint that is already pruned, keeping the file would not help, so this checkpoint stays in
+/// `records`. If measures cannot
 /// be cached, empties `records`. The cache is on disk when the function returns.
 MeasureOutcome keep_measures(const Store& store, std::vector<CheckpointRecord>& records,
                              const MeasureOptions& options);

@@ -298,7 +298,7 @@ std::optional<PublishedFile> find_published(const Store& store, const std::files
   if (!content) {
     throw NotFound(
         file.string() +
-        ": this is not a readable file, or the file is too large for a file of a figure");
+        ": this file cannot be read, or it is larger than any file that `figures` writes");
   }
   const std::string sha256 = sha256_hex(*content);
   const std::string name = file.filename().string();

@@ -291,8 +291,8 @@ namespace {
 [[noreturn]] void refuse_unread(const CheckpointRecord& record) {
   const bool pruned = record.state == CheckpointState::pruned;
   const std::string why = fmt::format(
-      "checkpoint {:.12} of run {:.12} (cycle {:g}), which may decide where the run ends "
-      "(`until`), {}; `shearcell regenerate {:.12}` restores it",
+      "checkpoint {:.12} of run {:.12} (cycle {:g}) {}, but it may decide where the run ends "
+      "(`until`); `shearcell regenerate {:.12}` restores it",
       record.sha256, record.run, record.cycle, pruned ? "was pruned" : "cannot be read",
       record.sha256);
   if (pruned) throw FilePruned(why);

@@ -292,7 +292,8 @@ TEST_F(Commands, PlanPrintsThePowerOfTheNextLook) {
                                 "claims: [{id: tiny.overlap, compare: mean_overlap_d, cycles: [1, "
                                 "1], published: {value: 0.001, source: none}, margin: 1e-6}]\n"));
   expect(0, {"run", "m.yaml", "--cycles", "1", "--seeds", "3", "-q"});
-  expect(0, {"plan", "m.yaml", "--cycles", "1"}, {"Until `figures` has measured some runs"});
+  expect(0, {"plan", "m.yaml", "--cycles", "1"},
+         {"is unknown: `figures` has measured too few runs"});
   expect(0, {"figures", "tiny", "--out", path("out")}, {"with probability 1.00"});
   expect(0, {"plan", "m.yaml", "--cycles", "1"},
          {"uses 4 of 6 seeds ", "are the true values: tiny.overlap 1.00"});
