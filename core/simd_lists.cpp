@@ -26,8 +26,8 @@ using Offsets = hn::Rebind<std::int32_t, D>;
 constexpr Offsets kOffsets{};
 
 // Stores the selected lanes of `values` without gaps, and returns the number of selected lanes. A
-// whole vector is written; its remaining lanes are undefined. The values are integers, because
-// Compress of Highway 1.0 copies a table of 16 kB in each call for doubles.
+// whole vector is written; its remaining lanes are undefined. The values are integers: for doubles,
+// Compress of Highway 1.0 would copy a table of 16 kB in each call.
 HWY_INLINE std::size_t store_selected(hn::Vec<Offsets> values, hn::Mask<D> mask,
                                       std::int32_t* HWY_RESTRICT to) {
   std::uint8_t bits[8] = {};

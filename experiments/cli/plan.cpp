@@ -217,7 +217,7 @@ void print_until(const std::vector<Line>& lines, const nlohmann::json& left, dou
   } else {
     fmt::print(
         "about {:.3g} particle-steps ({:.0f} % of the number above) if `until` ends these runs at "
-        "the same cycle as earlier runs, on average\n",
+        "the mean cycle at which it ended earlier runs\n",
         left.get<double>(), at_most > 0 ? 100 * left.get<double>() / at_most : 100);
   }
 }

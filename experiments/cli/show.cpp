@@ -192,8 +192,9 @@ void show_checkpoint(const Store& store, const CheckpointRecord& record, Context
     const Checkpoint checkpoint = store.load_checkpoint(record);
     const Eigen::Index grains = checkpoint.state.position.cols();
     const std::size_t wall_grains = checkpoint.cell.wall_grains.size();
-    more = {{"grains", grains, "grains", fmt::format("{} and {} wall grains", grains, wall_grains)},
-            {"wall_grains", wall_grains}};
+    more = {
+        {"grains", grains, "grains", fmt::format("{}, and {} wall grains", grains, wall_grains)},
+        {"wall_grains", wall_grains}};
     measures = measures_at(store, record, context);
   }
   const std::string file =

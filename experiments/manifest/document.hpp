@@ -37,7 +37,7 @@ Node read_document(std::string_view text, std::string_view file);
 
 /// The remedy for a key that is a number: YAML reads `{amplitude_rad: 0,05}` as a map with key 05.
 inline constexpr const char* kDecimalPoint =
-    "If this number follows a decimal comma, write a point instead of the comma, as in 0.05.";
+    "If the comma before this number is a decimal comma, write a point instead, as in 0.05.";
 
 /// Throws ManifestError with the position if the text is not UTF-8, or has control characters other
 /// than tabs and line ends. `remedy`: the advice given about a control character.

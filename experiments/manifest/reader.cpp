@@ -363,9 +363,10 @@ void fields(Placed<ClaimSpec>& claim, const auto& visit) {
   visit(claim.margin,
         {.name = "margin",
          .range = {0, kInfinity, true},
-         .doc = "in the unit of the measure. For `onset_size_cycle` and `reaches`, the margin "
-                "limits log2 of the ratio of the two waiting times: 1 means a factor of 2. These "
-                "claims use the log-rank test, which includes runs that end before the event"});
+         .doc = "in the unit of the measure. For `onset_size_cycle` and `reaches`, the margin is "
+                "the largest allowed log2 of the ratio of the two waiting times: a margin of 1 "
+                "allows a factor of 2. These claims use the log-rank test, which includes runs "
+                "that end before the event"});
   visit(claim.margin, {.name = "relative_margin",
                        .range = {0, kInfinity, true},
                        .doc = "instead of `margin`: limit of the relative difference; 0.03 means 3 "
@@ -1267,7 +1268,8 @@ struct Reader {
 
   // Reports each plot, claim, figure and panel whose name occurs twice or is already the name of a
   // figure or panel of the supplement. Exception: the manifest may define plots and claims of a
-  // supplement figure that is not in `figures` (`listed`) and that no C++ code computes.
+  // figure of the supplement if no C++ code computes this figure, and if the manifest does not list
+  // it in `figures`. `listed`: the names in `figures`.
   void check_own_names(std::span<const Figure> supplement, const std::vector<string>& listed) {
     std::vector<std::pair<const Node*, string>> names, figures;  // {node, its figure}
     Names panels;

@@ -10,8 +10,9 @@
 namespace shearcell {
 namespace {
 
-// The Group of a packing has this text in place of a manifest. The packings of all versions of an
-// experiment thus form one group, in which different packings get different names.
+// Runs are grouped by the SHA-256 of their manifest. Packings have this text instead, so the
+// packings of all versions of an experiment form one group, and different packings get different
+// names.
 const std::string kPackings = "packings";
 
 /// All registered manifests, oldest first. If an experiment returned to an earlier manifest, this
