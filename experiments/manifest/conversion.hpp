@@ -75,7 +75,7 @@ void resolve_auto(std::string_view key, Parameters& parameters);
 
 /// Mean overlap of touching grains at rest [d], to leading order: 0.75 p d/k. By the virial, a
 /// packing with n grains per volume and z contacts per grain has the mean pressure p = n z k
-/// <overlap> d/6, so <overlap>/d = 6/(n d^3 z) p d/k. The factor is 0.78 for n d^3 = 1.22 and z =
+/// <overlap> d/6, so <overlap>/d = 6/(n d^3 z) p d/k. The factor is 0.77 for n d^3 = 1.22 and z =
 /// 6.36 (for N = 2000). Rough side walls bear a part of the pressure, so 0.75 is used, which fits
 /// five settled packings within 7 %. p is the pressure at half the height: P minus half the grains'
 /// weight per area if P acts on a moving bottom wall, P plus half this weight if P acts at the top.

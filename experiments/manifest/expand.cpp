@@ -88,7 +88,8 @@ PlannedRun planned_run(const Membership& common, const Scale& scale, const Varia
   run.packing = variant.packing;
   if (recorded == nullptr) {
     run.prepare = prepare_stage(run.packing, seed, file ? std::optional(file->file) : std::nullopt);
-    // Variants may share a packing. Its membership therefore has the variant "packing".
+    // Variants may share a packing. Therefore place.variant of a packing is "packing", not the name
+    // of a variant.
     Membership& packing = run.prepare->memberships.emplace_back(common);
     packing.place.variant = "packing";
     packing.place.seed = seed;

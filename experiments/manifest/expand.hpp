@@ -22,12 +22,14 @@ struct ExpandOptions {
   std::optional<std::uint64_t> cycles = {};  ///< replaces the number in the manifest
   /// Replaces the number of seeds. If the manifest lists seeds, the first ones are used.
   std::optional<std::uint64_t> seeds = {};
-  std::vector<std::string> variants = {};      ///< only variants with these values, as "fluid=cell"
-  std::vector<std::uint64_t> only_seeds = {};  ///< only runs with these seeds; empty for all
-  std::optional<std::string> engine = {};      ///< replaces `engine`, which is then swept
+  /// Only variants with these values, for example "fluid=cell". Empty: all variants.
+  std::vector<std::string> variants = {};
+  std::vector<std::uint64_t> only_seeds = {};  ///< only runs with these seeds; empty: all runs
+  /// Replaces the manifest's `engine`. If the engines differ, `engine` becomes a swept key.
+  std::optional<std::string> engine = {};
   /// Stages in the store, and stages of manifests that stand before this manifest in the same
-  /// command. If they show that an earlier command requested more cycles of this manifest, warnings
-  /// assume the larger number.
+  /// command. The stages record how many cycles earlier commands requested. Warnings assume the
+  /// largest number that any command, also this one, requested with this version of the manifest.
   std::span<const Stage> known = {};
 };
 

@@ -63,9 +63,9 @@ nlohmann::json effective_parameters(const nlohmann::json& resolved);
 /// The engine given in a record, even if other parts of the record are damaged.
 EngineKind engine_of(const nlohmann::json& resolved);
 
-/// JSON without whitespace, with keys sorted by their bytes and the shortest digits that read back
-/// to the same double. Equal values give equal texts. Throws std::invalid_argument on NaN or
-/// infinity.
+/// JSON without whitespace. Keys are sorted by their bytes. Real numbers have the fewest digits
+/// that read back to the same double. Equal values give equal texts. Throws std::invalid_argument
+/// on NaN or infinity.
 std::string canonical_json(const nlohmann::json& json);
 
 }  // namespace shearcell

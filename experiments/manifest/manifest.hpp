@@ -88,8 +88,9 @@ struct SweepAxis {
   std::vector<Setting> values;
 };
 
-/// The variants are all combinations of the values of the `grid` axes (the first axis varies
-/// slowest) and the rows of the `zip` axes (row k has the k-th value of each `zip` axis).
+/// A variant combines one value of each `grid` axis with one row of the `zip` axes. Row k has the
+/// k-th value of each `zip` axis. All combinations are variants; the first `grid` axis varies
+/// slowest.
 struct Sweep {
   std::vector<SweepAxis> grid;
   std::vector<SweepAxis> zip;
@@ -133,11 +134,13 @@ struct StatedUntil {
 
 struct Checkpoints {
   std::uint64_t every_cycles = 1;
-  std::vector<double> phases = {};  ///< fractions of the next cycle, ascending, in (0, 1)
+  /// In the cycle after each checkpoint of `every_cycles`, further checkpoints are written at these
+  /// fractions of the cycle. Ascending, in (0, 1).
+  std::vector<double> phases = {};
   Position at = {};
 };
 
-/// An entry of `labels`: a name for the variants with these values.
+/// An entry of `labels`: a name for the variants that have the values `where`.
 struct VariantLabel {
   nlohmann::json where;  ///< parameters and their values, an object
   std::string name;
@@ -156,10 +159,10 @@ struct Start {
   std::string file = {};  ///< relative to the folder of the manifest
   std::optional<LengthUnit> unit = {};
   std::string experiment = {};
-  std::string scale = {};  ///< scale of the recorded run; "": the scale of the sheared run
+  std::string scale = {};  ///< scale of the recorded run; "": the scale of the new run
   nlohmann::json variant = nlohmann::json::object();  ///< swept values; empty if not given
-  /// First digits of the run's id, from the key `checkpoint`, which replaces experiment, scale and
-  /// variant.
+  /// First digits of the recorded run's id, from the key `checkpoint`. They replace experiment,
+  /// scale and variant.
   std::string run = {};
   Settings settings = {};  ///< start_seed, start_cycle, start_noise_d
   Position at = {};

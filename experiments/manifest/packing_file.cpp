@@ -81,7 +81,7 @@ struct Section {
 };
 
 struct Box {
-  string_view line;            ///< from the last line that was read for the box
+  string_view line;            ///< some text from the last line that was read for the box
   Eigen::AlignedBox3d planes;  ///< empty along axes without bounds
   double lean = 0;             ///< largest off-axis component of an edge; 0 if orthogonal
 };
@@ -138,12 +138,12 @@ std::optional<LengthUnit> unit_of(string_view name) {
   return name == "cgs" ? LengthUnit::cm : value_of<LengthUnit>(name);
 }
 
-/// `units`: whether a name in kMeanings may end in a unit, as in x_m. Other names may still be
-/// recognized as a diameter, a position or a velocity. A diameter with another name is compared
-/// with the diameter of the run. A position or velocity with another name is refused, not read:
-/// earlier versions ignored velocities with other names, so reading them would change packings with
-/// known ids. Earlier versions also ignored columns such as x_mm or "x [m]". Therefore these
-/// columns are only read if there is no x, x_m or x_d.
+/// `units`: whether a name in kMeanings may end in a unit, as in x_m. A name that is not in
+/// kMeanings may still be recognized as a diameter, a position or a velocity. Such a diameter is
+/// compared with the diameter of the run. Such a position or velocity is refused. (Earlier versions
+/// ignored such velocities. If this version read them, a file would give another packing than
+/// before, with the same id.) Earlier versions also ignored columns such as x_mm or "x [m]". For
+/// the same reason, these columns are read only if the file has none of the columns x, x_m and x_d.
 Meaning meaning_of(const Column& column, bool units) {
   static const std::regex with_unit(
       "(.+?)([ _]|[ _]*[\\[(])(d|[mcu]?m|\u00b5m|\u03bcm)(_per_s|/s)?[\\])]?");
@@ -704,7 +704,7 @@ class PackingReader {
     struct Candidate {
       Column column;
       Meaning meaning;
-      std::size_t field;  ///< the first field of the column in a row
+      std::size_t field;  ///< index of the column's first field within a row
     };
     std::vector<Candidate> candidates;
     std::size_t fields = 0;

@@ -48,9 +48,9 @@ inline constexpr std::size_t kLargestPackingFile = std::size_t{32} << 20;
 
 /// Detects the format of the text and reads it. `file`: the name for messages. Positions are kept,
 /// except that z is wrapped into the box. Throws ManifestError, with line, value and remedy, if the
-/// text cannot be read; if the number of grains is not facts.grains; if the grains are unequal; if
-/// a grain is outside of the box in x or y; or if two grains overlap by more than
-/// facts.largest_overlap, directly or across the periodic boundary of the box.
+/// text cannot be read; if the number of grains is not facts.grains; if the file gives a diameter
+/// other than facts.diameter_m; if a grain is outside of the box in x or y; or if two grains
+/// overlap by more than facts.largest_overlap, directly or across the periodic boundary of the box.
 PackingFile read_packing(std::string_view text, std::string_view file, const PackingFacts& facts);
 
 /// For example "150 grains, box 6 x 7.2 x 6 d, no velocities; not read: element".

@@ -518,7 +518,7 @@ struct Reader {
   const Node& document;
   const Scale& base;                             // the keys that apply to all scales
   std::span<const Figure> figures_to_list = {};  // the figures allowed in `figures`
-  Names experiments = {};  // the experiments whose runs plots and claims can select
+  Names experiments = {};  // plots and claims can select runs of these experiments
 
   // Reports keys that cannot be used in a manifest with the key `of`.
   void check_of() {
@@ -774,8 +774,8 @@ struct Reader {
     }
   }
 
-  // Reads a pair: the sides of a claim, the first and last cycle, or the ends of a window. A
-  // key without an example (`at_cycle`) has one value, which is both the first and the last cycle.
+  // Reads a pair: the sides of a claim, the first and last cycle, or the ends of a window. If
+  // about.example is empty (`at_cycle`), reads one cycle, which is both the first and the last.
   template <class T>
   void read(const Node& in, const Field& about, std::array<T, 2>& both) {
     constexpr bool sides = std::is_same_v<T, json>, whole = std::is_integral_v<T>;
@@ -820,7 +820,7 @@ struct Reader {
   void read(const Node& in, const Field& about, std::vector<T>& values) {
     values.clear();  // a scale starts with a copy of the top level's list
     Field item = with_type<T>(about);
-    // The example of an item is the example of its list, without the brackets. Numbers have none.
+    // The example of an item is that of its list without the brackets. A number has no example.
     item.example = item.example.substr(1, std::is_arithmetic_v<T> ? 0 : item.example.size() - 2);
     for (const Node& each : items_of(in, about.example)) read(each, item, values.emplace_back());
   }

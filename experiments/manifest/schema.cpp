@@ -282,7 +282,7 @@ std::optional<ValueProblem> check_value(const Field& field, const json& value) {
   if (!field.range.contains(value.get<double>())) {
     return ValueProblem{"is out of range", takes(field)};
   }
-  // Other JSON writers may write the real number 2.0 as the integer 2.
+  // A real field also accepts an integer, because other JSON writers may write 2.0 as 2.
   if (field.whole && !value.is_number_integer()) return not_a_number(field, takes(field));
   return std::nullopt;
 }

@@ -18,7 +18,7 @@
 namespace shearcell {
 
 /// How a parameter enters the identity of a run. A parameter of `prepare` enters the records of all
-/// stages, since settling comes first; any other parameter enters the record of its own stage only.
+/// stages; any other parameter enters the record of its own stage only.
 struct Identity {
   /// The first stage whose record has an entry for the parameter. Empty if no record has one.
   std::optional<StageKind> stage = {};
@@ -90,8 +90,8 @@ std::span<const Field> schema();
 /// The parameter with this name, or nullptr.
 const Field* find_field(std::string_view name);
 
-/// Whether the key is the length of a run or the number of seeds. These do not distinguish runs,
-/// but a zip may give each variant its own length and number of seeds.
+/// Whether the key is the length of a run or the number of seeds. Neither key is part of a run's
+/// id, but a zip may still set a length and a number of seeds for each variant.
 inline bool is_length(std::string_view key) {
   return key == "cycles" || key == "seeds";
 }

@@ -39,7 +39,7 @@ void require_same_cell(const Manifest& manifest, const Scale& scale, const Varia
     refuse(manifest.file, scale.start.at, "start",
            fmt::format("this version of the program cannot read run {:.8}: {}", recorded.id,
                        problem.what()),
-           "", "Use the version that computed this run, or choose another run.");
+           "", "Use the version of the program that computed this run, or choose another run.");
   }
   for (const Field& field : schema()) {
     const bool of_packing = field.identity.stage == StageKind::prepare &&

@@ -32,7 +32,8 @@ struct PackingText {
   StartFile file;
 };
 
-/// Reads the file that `start` names, from the folder of the manifest. Throws ManifestError.
+/// Reads the file that `start` names. A relative path starts at the folder of the manifest. Throws
+/// ManifestError.
 PackingText read_packing_file(const Manifest& manifest, const Scale& scale);
 
 struct PlacedGrains {

@@ -36,7 +36,7 @@ std::vector<std::string> swept_keys(const std::vector<json>& variants) {
   return keys;
 }
 
-/// The keys for which rounding to four digits does not make two different values equal.
+/// The keys whose different values stay different when they are rounded to four digits.
 std::set<std::string> keys_in_brief(const std::vector<std::string>& keys,
                                     const std::vector<json>& variants) {
   std::set<std::string> found;

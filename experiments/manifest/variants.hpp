@@ -44,15 +44,15 @@ class Filter {
   explicit Filter(const std::vector<std::string>& wanted);
   explicit Filter(const std::vector<std::uint64_t>& wanted);
 
-  /// Whether the texts select the value. The parts of `name`, the display name of the value, count
-  /// as parts of the value. If several texts have the same keys, the value must fit at least one of
-  /// them: "a=1", "a=2" and "b=3" select values with b=3 that also have a=1 or a=2. Without texts,
-  /// every value is selected.
+  /// Whether the texts select the value. `name`: the display name of the value; its parts are added
+  /// to those of `value`. If several texts have the same keys, the value must fit at least one of
+  /// these texts: "a=1", "a=2" and "b=3" select values with b=3 that also have a=1 or a=2. Without
+  /// texts, every value is selected.
   bool passes(const std::string& value, const std::string& name = "");
   /// The first of the given texts that selects none of the values in seen(), or null.
   const std::string* unfound() const;
-  /// The values that passes() was called with, each once, in order. If the display name of
-  /// a value has additional parts, the name follows as the next element.
+  /// The values that passes() was called with, each once, in the order of the calls. A display name
+  /// follows its value if the name has parts that the value lacks.
   const std::vector<std::string>& seen() const { return seen_; }
 
  private:
@@ -91,7 +91,8 @@ const SweepAxis* find_axis(const Sweep& sweep, std::string_view key);
 std::uint64_t variant_count(const Sweep& sweep);
 
 /// The variants in the order of the manifest: the first grid axis varies slowest, the rows of the
-/// zip fastest. `scale` must be complete (see Scale), with at most ManifestLimits::runs variants.
+/// zip fastest. `scale` must be complete (see Scale) and must not have more variants than
+/// ManifestLimits::runs.
 std::vector<Variant> variants_of(const Scale& scale);
 
 }  // namespace shearcell
