@@ -54,7 +54,7 @@ void add_wall_grains(const Geometry& geometry, std::uint64_t seed, WallSide side
   const auto target =
       static_cast<std::size_t>(geometry.wall_grain_area_fraction * area / kGrainArea);
   // With this many attempts, the coverage can come close to the jamming limit (0.547). A wall with
-  // fewer grains than `target` is still rough.
+  // fewer grains than `target` is accepted, because it is still rough.
   const auto attempts = static_cast<std::uint64_t>(4000.0 * area);
   const std::uint32_t stream = wall_stream(side, geometry.wall_grain_draw);
   LinkedCells near({.width = length, .depth = depth}, {.top = 1}, 1.0, target);

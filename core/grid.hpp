@@ -29,7 +29,7 @@ struct Grid {
 
   Grid() = default;
   /// Makes a grid with one strip. The grid cells are as small as possible, but not smaller than
-  /// `sizes` [d]. There are at most about four grid cells per point, so a sparse grid is cheap.
+  /// `sizes` [d]. To save memory, a grid has at most about four grid cells per point.
   Grid(const Cell& cell, const WallPose& in_pose, std::array<double, 3> sizes, std::size_t points);
 
   std::size_t size() const {

@@ -137,8 +137,9 @@ struct PruneTask {
   std::uint16_t* inner_count = nullptr;         ///< length of the list of each lane
   std::uint16_t* other_slots = nullptr;         ///< one entry per block, like the next two arrays
   std::uint16_t* moving_wall_slots = nullptr;
-  std::uint8_t* near = nullptr;
-  std::uint8_t* grain_near = nullptr;  ///< like `near`, but one entry per grain and spare lane
+  std::uint8_t* near = nullptr;  ///< flags, one entry per block
+  /// Like `near`, but with one entry for each grain and one for each spare lane.
+  std::uint8_t* grain_near = nullptr;
   std::int32_t padding = 0;
   double depth = 0, per_depth = 0;
 };
@@ -149,7 +150,7 @@ struct Kernels {
   const char* name;
   std::size_t lanes;
   double (*step)(const StepTask&, std::size_t first_block, std::size_t last_block);
-  /// Returns the length of the longest list. Lists longer than the stride are truncated.
+  /// Returns the length of the longest list before lists longer than the stride are truncated.
   std::size_t (*search)(const SearchTask&, std::size_t first_place, std::size_t last_place);
   /// Returns false if a block needs more than inner_stride slots. The inner lists are then invalid.
   bool (*prune)(const PruneTask&, std::size_t first_block, std::size_t last_block);

@@ -15,9 +15,9 @@
 namespace shearcell {
 namespace {
 
-/// Returns the smallest limit that is set for the cgroup (version 2) of this process or for one of
-/// its parents. In a container, the topmost parent is the cgroup of the container. read(file)
-/// returns the limit in a file, or NaN if the file contains no number.
+/// Returns the smallest limit that is set for the cgroup (version 2) of this process or for a
+/// parent of this cgroup. In a container, the topmost parent is the cgroup of the container.
+/// read(file) returns the limit in a file, or NaN if the file contains no number.
 template <class Read>
 double smallest_limit(const char* name, const Read& read) {
   std::filesystem::path group = "/";

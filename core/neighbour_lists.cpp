@@ -66,9 +66,10 @@ double Reference::moved(const double* rows, std::size_t grain, const WallPose& p
 }
 
 double Reference::wall_moved(const WallPose& pose) const {
-  // The side walls follow the shear, which is zero at the top wall. Grains of the bottom wall move
-  // in x with the bottom plane, whatever their height. A grain up to d behind the plane therefore
-  // deviates from the shear by at most d times the change of tan(theta).
+  // The side walls follow the shear displacement, which is zero at the top wall. Grains of the
+  // bottom wall move in x with the bottom plane, whatever their height. The displacement of a grain
+  // up to d behind the plane therefore differs from the shear displacement at the height of the
+  // grain by at most d times the change of tan(theta).
   const double travel =
       std::max(std::fabs(pose.bottom - pose_.bottom), std::fabs(pose.top - pose_.top));
   return travel * (1 + std::fabs(pose.tan_theta)) + std::fabs(pose.tan_theta - pose_.tan_theta);

@@ -53,7 +53,8 @@ class Reference {
   /// Part of each margin [d] that the shear since set() and the rounding of positions use up.
   double margin_loss(double tan_theta) const;
 
-  /// Height [d] of the top wall at set(). The frame that moves with the shear is at rest there.
+  /// Height [d] of the top wall at set(). At this height, the frame that moves with the shear has
+  /// zero velocity.
   double frame_height() const { return pose_.top; }
   /// One coordinate of all grains in the untilted frame [d], in single precision.
   const float* data(std::size_t axis) const { return at_[axis].data(); }
@@ -67,7 +68,7 @@ class Reference {
 
 /// State of the cell when lists are built or pruned.
 struct Snapshot {
-  double* rows = nullptr;  ///< rows as in kernel.hpp; NeighbourLists sets all margins
+  double* rows = nullptr;  ///< rows as in kernel.hpp; NeighbourLists sets the margin in each
   const double* velocity[3] = {};
   std::size_t grains = 0;
   WallPose pose;
@@ -83,8 +84,8 @@ class NeighbourLists {
   NeighbourLists(const Kernels& kernels, const ListSettings& settings, double depth,
                  const Walls& walls, Team& team);
 
-  /// Whether the inner lists are valid: no grain or wall can have moved by more than its margin.
-  /// `excess` is the return value of Kernels::step.
+  /// Whether the inner lists are valid. They are invalid if a grain or wall may have moved by more
+  /// than the margin of this grain or wall. `excess` is the return value of Kernels::step.
   bool inner_valid(double excess, const WallPose& pose) const;
 
   /// Sets all margins for new outer lists. No margin exceeds widest_margin().

@@ -26,8 +26,8 @@ using Offsets = hn::Rebind<std::int32_t, D>;
 constexpr Offsets kOffsets{};
 
 // Stores the selected lanes of `values` without gaps, and returns the number of selected lanes. A
-// whole vector is written; its remaining lanes are undefined. The values are integers: for doubles,
-// Compress of Highway 1.0 would copy a table of 16 kB in each call.
+// whole vector is written; its remaining lanes are undefined. The values are integers, not
+// doubles. For doubles, Compress of Highway 1.0 would copy a table of 16 kB in each call.
 HWY_INLINE std::size_t store_selected(hn::Vec<Offsets> values, hn::Mask<D> mask,
                                       std::int32_t* HWY_RESTRICT to) {
   std::uint8_t bits[8] = {};
@@ -195,7 +195,7 @@ HWY_INLINE std::size_t count_moving_wall(const PruneTask& t, const std::int32_t*
   return wall;
 }
 
-// Sets the flags of the wall planes near each grain of a block.
+// For each grain of a block, sets the flags of the wall planes that are near this grain.
 HWY_INLINE void find_planes(const PruneTask& t, std::size_t block) {
   V margin;
   const Vectors own = load_rows(

@@ -53,14 +53,16 @@ struct WatchTask {
 /// Checks that all numbers are finite, all grains are inside the walls, and no overlap exceeds its
 /// limit. The kinetic energy of a grain may not exceed the elastic energy of twelve contacts at the
 /// overlap limit. The time step must be below 2/omega for each frequency omega of the contact
-/// network. Because (a - b)^2 <= (1 + c) a^2 + (1 + 1/c) b^2, no omega^2 exceeds the largest of the
-/// following bounds. Here a and b are the displacements of the two partners of a contact along its
-/// normal; c is 1 for two grains, and 1/4 for a grain (a) and the moving wall (b). The bound of a
-/// grain is k/m times the largest eigenvalue of the sum of w n n^T over its contacts: w is 2 for
-/// contacts with grains, 1 with fixed walls, 5/4 with the moving wall. The bound of the moving wall
-/// is 5 k / (mass of the wall) times the sum of n_y^2 over its contacts. The largest bound is exact
-/// for a pair (2 k/m) and for an FCC crystal (8 k/m). The checks take as long as about four time
-/// steps. Throws NumericalFailure for the failing grain that is stored first in memory.
+/// network. No omega^2 exceeds the largest of these bounds:
+///   each grain: k/m times the largest eigenvalue of the sum of w n n^T over its contacts, where w
+///     is 2 for contacts with grains, 1 for contacts with fixed walls, and 5/4 for contacts with
+///     the moving wall;
+///   moving wall: 5 k / (mass of the wall) times the sum of n_y^2 over its contacts.
+/// The bounds follow from (a - b)^2 <= (1 + c) a^2 + (1 + 1/c) b^2, where a and b are the
+/// displacements of the two partners of a contact along its normal; c is 1 for two grains, and 1/4
+/// for a grain (a) and the moving wall (b). The largest bound is exact for a pair (2 k/m) and for
+/// an FCC crystal (8 k/m). The checks take as long as about four time steps. Throws
+/// NumericalFailure for the failing grain that is stored first in memory.
 void check_grains(const WatchTask& task);
 
 }  // namespace shearcell

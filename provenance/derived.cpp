@@ -85,7 +85,7 @@ void DerivedCache::open() {
   if (read_only_ && empty) return;
   database_.emplace(file_, read_only_ ? Access::read : Access::create);
   sqlite::Database& database = *database_;
-  // Nothing is synced, because objects that a power cut damages are detected and computed again.
+  // Nothing is synced, because objects damaged by a power cut are detected and computed again.
   database.execute("PRAGMA cell_size_check=ON; PRAGMA synchronous=OFF;");
   if (read_only_) database.execute("PRAGMA query_only=ON");
   if (!read_only_ && database.integer("PRAGMA page_count") == 0) {

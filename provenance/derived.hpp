@@ -50,7 +50,7 @@ class DerivedCache {
   std::vector<std::optional<std::vector<std::byte>>> get(std::span<const DerivedKey> keys);
 
   /// The digests of those objects of the checkpoint that get() would return. With `damaged_too`,
-  /// the result also has the value "" for each damaged object. Empty if the file cannot be read.
+  /// the result also has the value "" for each damaged object. Empty if the cache cannot be read.
   Digests digests(const std::string& checkpoint, bool damaged_too = false);
 
   /// Stores all objects or, after an error, none. Replaces objects with the same keys.

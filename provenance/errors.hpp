@@ -21,8 +21,8 @@ struct FilePruned : NotFound {
   using NotFound::NotFound;
 };
 
-/// The machine cannot do what was asked, or another program blocks it. Exit code 1, as for errors
-/// of the operating system (std::system_error).
+/// The machine cannot do what was asked, or another program blocks this work. Exit code 1, as for
+/// errors of the operating system (std::system_error).
 struct MachineError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

@@ -102,7 +102,7 @@ inline void put_attribute(const Handle& object, const std::string& name, std::ui
   put_attribute(object, name, H5T_STD_U64LE, &value);
 }
 
-/// Writes cells.size() / length strings, each of `length` bytes, as one attribute.
+/// Splits `cells` into strings of `length` bytes and writes them as one attribute.
 inline void put_strings(const Handle& object, const std::string& name, const std::string& cells,
                         std::size_t length, const Shape& shape) {
   const Handle type(require(H5Tcopy(H5T_C_S1), "a text type"), H5Tclose);

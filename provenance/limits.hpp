@@ -15,7 +15,7 @@ struct StoreLimits {
   static constexpr std::size_t text = 4'096;            ///< length of a run id or a name [bytes]
   static constexpr std::size_t value_bytes = 64 << 20;  ///< size of one value in the database
   static constexpr std::size_t json_depth = 64;  ///< nesting depth of a payload or stored measure
-  /// Size of a figure's file that the user gives to `show` [bytes].
+  /// Largest size of a figure file that `show` reads [bytes].
   static constexpr std::uint64_t published_bytes = 1 << 30;
 };
 

@@ -55,7 +55,8 @@ class LineageBuilder {
     attempt.seq = event_.seq;
     attempt.started_at = event_.recorded_at;
     if (begun.host.is_object()) attempt.host = begun.host;
-    // Early events have no bits_version. It was equal to the layout of their payload, 1 or 2.
+    // Early events do not record bits_version. The programs that wrote these events had the
+    // bits_version 1 or 2, the same number as the layout of the payload (`schema`).
     attempt.bits_version = begun.bits_version.value_or(std::min<std::uint64_t>(event_.schema, 2));
     if (from_checkpoint.empty()) return;
     attempt.from_run = from_run;

@@ -44,9 +44,10 @@ struct Attempt {
   std::string why;  ///< reason for a failure or interruption; "" otherwise
   /// Host, build and libraries as recorded: a JSON object, which may be empty.
   nlohmann::json host = nlohmann::json::object();
-  std::string from_run;                  ///< run that recorded the initial state; "" if no run did
-  std::string from_checkpoint;           ///< SHA-256 of the initial state, or ""
-  std::uint64_t bits_version = 0;        ///< see core/bits_version.hpp; derived for old events
+  std::string from_run;         ///< run that recorded the initial state; "" if no run did
+  std::string from_checkpoint;  ///< SHA-256 of the initial state, or ""
+  /// See core/bits_version.hpp. For old events, which do not record it, derived from Event::schema.
+  std::uint64_t bits_version = 0;
   std::vector<std::string> checkpoints;  ///< SHA-256 of the recorded checkpoints, in order
 };
 
@@ -82,9 +83,9 @@ void add_run_lineage(const Store& store, const std::string& id, RunLineages& lin
 
 /// Processor time of a stage, and the names of the processors.
 struct ComputingTime {
-  /// Processor time of all steps up to recorded checkpoints, over all attempts [s]. Events of
-  /// earlier versions, and of LAMMPS under mpirun, have no processor time. Their wall-clock time,
-  /// multiplied by the number of processes, is added instead.
+  /// Processor time of all attempts [s]. The steps after the last recorded checkpoint of an attempt
+  /// are not counted. Events of earlier versions, and of LAMMPS under mpirun, have no processor
+  /// time. Their wall-clock time, multiplied by the number of processes, is added instead.
   double core_seconds = 0;
   std::set<std::string> processors;  ///< names of the processors that computed the steps
 };

@@ -127,7 +127,9 @@ struct RunMerge {
   std::optional<Event> last_claim;   ///< last event in the store that began or ended an attempt
   std::set<std::string> known;       ///< SHA-256 of checkpoints that are not new
   std::set<std::uint64_t> attempts;  ///< seq (in the source) of the events of copied attempts
-  bool source_wins = false;          ///< the source has a later step or state of the run
+  /// Whether the run is not in the store, or is at a later step in the source, or is at the same
+  /// step and has a state there that is later in StageState.
+  bool source_wins = false;
 
   bool wants(const Database& into, const Event& event) const {
     if (event.type == events::RunDeclared::kType) {
@@ -262,7 +264,7 @@ void merge_events(Database& into, EventLog& log, const sqlite::WriteTransaction&
     const std::string stream = run_stream(stage.id);
     runs.emplace(stream, plan_run(into, log, source.tables, streams.at(stream), stage));
   }
-  // Leaves out the streams of manifests and of files of grain positions that `into` already has.
+  // Manifests and files of grain positions that `into` already has are not copied.
   std::erase_if(streams, [&log](const auto& entry) {
     return holds_a_text(entry.first) && log.version(entry.first) > 0;
   });

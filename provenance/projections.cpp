@@ -120,17 +120,16 @@ class Projector {
                       event_.seq, event_.type, event_.stream));
     }
     require_cycles(ask.target_cycles, ask.checkpoint_every);
-    // A completed run becomes `declared` again if the new target exceeds the old target or the last
-    // cycle of the run. `until` may have ended the run before the old target.
+    // A completed run becomes `declared` again if the new target exceeds the old target. If `until`
+    // ended the run before the old target, the run's last cycle is used instead of the old target.
     run("INSERT INTO runs(id, ordinal, parent, kind, resolved, state, grains, target_cycles, "
         "updated_at) VALUES(?,?,NULLIF(?,''),?,?,'declared',?,?,?) ON CONFLICT(id) DO UPDATE SET "
         "state = iif(state = 'completed' AND min(target_cycles, cycle) < excluded.target_cycles, "
         "'declared', state), target_cycles = max(target_cycles, excluded.target_cycles)",
         id_, event_.seq, d.parent, d.kind, d.resolved.dump(), d.grains, ask.target_cycles,
         event_.recorded_at);
-    // A repeated declaration sets `ordinal`, so that the run becomes the last one of its place (see
-    // holds_place()). If the declaration raises the target or changes the checkpoint interval,
-    // `ordinal` stays the same.
+    // If a declaration is repeated without a larger target or another checkpoint interval, it sets
+    // `ordinal`. This makes the run the last one of its place (see holds_place()).
     run("INSERT INTO memberships VALUES(?,?,?,?,?,?,?,?,?,?,?,?) ON CONFLICT DO UPDATE SET "
         "ordinal = iif(excluded.target_cycles <= target_cycles AND excluded.checkpoint_every = "
         "checkpoint_every, excluded.ordinal, ordinal), "
@@ -166,9 +165,9 @@ class Projector {
 
   void operator()(const events::RunCompleted& e) const {
     const json ended = member_of(e.summary, "ended"), asked = member_of(ended, "memberships");
-    // The run is not complete if its target was raised during the computation. A run that `until`
-    // ended early is also not complete if another experiment has asked for the run during the
-    // computation, because that experiment may need more cycles.
+    // The run is not complete if its target was raised during the computation. If the condition
+    // `until` ended the run early, the run is also not complete if another experiment requested it
+    // during the computation, because that experiment may need more cycles.
     run("UPDATE runs SET error = '', ends = json_insert(ends, '$[#]', json(?2)), state = "
         "iif(target_cycles > ?3 OR ?4 < (SELECT count(*) FROM memberships WHERE run = ?1), "
         "'declared', 'completed') WHERE id = ?1",
@@ -244,8 +243,8 @@ class Projector {
 
   /// Called after checkpoint `sha256` was recorded, rejected or regenerated. Sets cycle, step and
   /// state hash of the run to those of the run's last recorded checkpoint. Does nothing if the run
-  /// has reached a later step than checkpoint `sha256`: the checkpoint at that later step may be
-  /// pruned, and pruning must not set the run back.
+  /// has reached a later step than that of checkpoint `sha256`. The checkpoint at the later step
+  /// has perhaps been pruned, and pruning must not set the run back.
   void move_to_furthest_from(const std::string& sha256) const {
     run("UPDATE runs SET (cycle, step, state_hash) = (SELECT coalesce(max(cycle), 0), "
         "coalesce(max(step), 0), coalesce(max(state_hash), '') FROM (SELECT * FROM checkpoints "
@@ -263,7 +262,7 @@ StoreDamaged damaged_table(const Database& database, const std::string& why) {
   return StoreDamaged(fmt::format("{}: a derived table {}; run `rebuild`", database.name(), why));
 }
 
-/// The value of a cell that holds JSON.
+/// The value of the JSON text in a table column.
 template <class T>
 T parse(const Database& database, const std::string& text) {
   try {

@@ -23,8 +23,8 @@ inline constexpr std::array<std::string_view, 6> projected_tables = {
 
 /// SQL that creates the empty tables.
 extern const char* const projection_tables;
-/// Creates empty tables in memory, for the events of a log that may be damaged or forged. Error
-/// messages call the database `name`.
+/// Creates empty tables in memory, for the events of a log that may be damaged or forged.
+/// `name` is the name of the database in error messages.
 sqlite::Database empty_projections(const std::string& name);
 
 /// Applies one event to the tables; no other code writes to them. An event of unknown type changes
@@ -53,10 +53,10 @@ std::map<std::string, TableRows> projection_rows(const sqlite::Database& databas
 NotFound unknown_stage(std::string_view id);
 NotFound unknown_checkpoint(std::string_view run, std::string_view sha256);
 
-/// Whether the stored stage `known` has no membership with the place of `wanted`, or has one with a
-/// smaller target or another checkpoint interval. True if `known` is empty.
+/// Whether `wanted` is news for the stored stage `known`: no membership of `known` has the same
+/// place, the same checkpoint interval and at least the same target. True if `known` is empty.
 bool adds_something(const std::optional<Stage>& known, const Membership& wanted);
-/// False if another run was declared for `place` after `run`, for example from another packing.
+/// False if the last run declared for `place` is another run, for example one with another packing.
 bool holds_place(const sqlite::Database& database, std::string_view run, const Place& place);
 
 /// The stages whose ids begin with `prefix`, in the order in which they were declared.

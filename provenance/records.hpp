@@ -57,7 +57,7 @@ inline std::vector<Ask> asks_of(const std::vector<Membership>& memberships) {
   return asks;
 }
 
-/// The name of a scale in text and JSON: "base" if the manifest has no scales. Events store "".
+/// The name of a scale in text and JSON: "base" (in events: "") if the manifest has no scales.
 inline std::string scale_name(const std::string& scale) {
   return scale.empty() ? "base" : scale;
 }
@@ -99,14 +99,15 @@ struct Stage {
   /// `running` until it is resumed.
   StageState state = StageState::declared;
   std::uint64_t grains = 0;
-  std::uint64_t target_cycles = 0;                ///< the largest declared target
-  std::uint64_t attempts = 0;                     ///< number of starts and resumes
-  double cycle = 0;                               ///< cycle of the last checkpoint
-  std::uint64_t step = 0;                         ///< step of the last checkpoint
-  std::string state_hash;                         ///< of the last checkpoint, or ""
-  double wall_seconds = 0;                        ///< sum over all checkpoints
-  double particle_steps = 0;                      ///< sum over all checkpoints
-  nlohmann::json ends = nlohmann::json::array();  ///< why the stage ended, one entry per completion
+  std::uint64_t target_cycles = 0;  ///< the largest declared target
+  std::uint64_t attempts = 0;       ///< number of starts and resumes
+  double cycle = 0;                 ///< cycle of the last checkpoint
+  std::uint64_t step = 0;           ///< step of the last checkpoint
+  std::string state_hash;           ///< of the last checkpoint, or ""
+  double wall_seconds = 0;          ///< sum over all checkpoints
+  double particle_steps = 0;        ///< sum over all checkpoints
+  /// Why the stage ended: one entry for each time that it was completed.
+  nlohmann::json ends = nlohmann::json::array();
   std::string error;                    ///< why the stage failed or was interrupted, or ""
   std::string updated_at;               ///< time of the stage's last event, UTC
   std::vector<Membership> memberships;  ///< in the order in which they were declared
@@ -124,7 +125,7 @@ struct Run {
   bool newest = true;
 };
 
-/// Whether two stages with one id describe the same computation.
+/// Whether two stages that have the same id describe the same computation.
 bool same_computation(const auto& a, const auto& b) {
   return a.parent == b.parent && a.kind == b.kind && a.resolved == b.resolved &&
          a.grains == b.grains;

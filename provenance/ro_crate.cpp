@@ -301,7 +301,7 @@ std::vector<std::string> write_ro_crate(const Store& store, const CrateFacts& fa
   for (const RunLineage& stage : facts.stages) {
     for (const CheckpointHistory& c : stage.checkpoints) {
       const std::string path = path_of_checkpoint(c.sha256());
-      if (!c.kept()) {  // an earlier export may have written the file
+      if (!c.kept()) {  // delete the file if an earlier export wrote it
         fs::remove(folder / path);
         continue;
       }

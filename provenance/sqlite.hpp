@@ -46,19 +46,20 @@ class Database {
  public:
   /// Even with Access::read SQLite may write: it rolls back the transaction of a killed program.
   Database(const std::filesystem::path& file, Access access);
-  /// A new database in memory, which error messages call `name`.
+  /// A new database in memory. `name` is its name in error messages.
   static Database in_memory(const std::string& name = ":memory:");
 
   /// Runs SQL statements and ignores the rows that they return.
   void execute(const std::string& sql);
-  /// Runs SQL statements in one transaction, unless the database has tables.
+  /// Runs SQL statements in one transaction. Does nothing if the database already has tables.
   void create_tables(const std::string& sql);
   /// The value in the first column of the first row that a query returns.
   std::int64_t integer(const std::string& sql);
   const std::string& name() const { return name_; }
   sqlite3* handle() const { return handle_.get(); }
   /// Throws MachineError when the file was moved, replaced or deleted. Called before each
-  /// transaction, because a transaction may play back a journal.
+  /// transaction, because a transaction may play back a journal, and another file at the same path
+  /// may have another journal.
   void require_in_place() const;
   /// Throws MachineError if the last system call of SQLite failed with EIO. SQLite itself reports
   /// such a read error as a damaged database.

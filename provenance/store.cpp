@@ -97,7 +97,7 @@ std::string loss_of(const sqlite::Database& database, const std::string& token,
     return fmt::format("its lease expired and another program took over the run ({})",
                        describe(lease.holder));
   }
-  // If the run has a newer attempt or is no longer running, another program continued the run.
+  // Only another program can have recorded a newer attempt or a state other than `running`.
   const auto run = query_stage(database, id);
   const bool own = run && run->attempts == attempt && run->state == StageState::running;
   return own ? "" : "another process continued it";

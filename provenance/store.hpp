@@ -106,20 +106,21 @@ class Store {
   /// register_packing() recorded. Throws StoreDamaged if the store lacks the text.
   std::pair<std::string, std::string> packing_text(const std::string& sha256) const;
 
-  /// Records each membership of the stage for which one of these is true: the store does not have
-  /// the membership; the store has it with a smaller target or another checkpoint interval; another
-  /// stage was declared for the membership's place after this stage. A larger target makes a
-  /// completed stage `declared` again. Throws std::invalid_argument when the id is not a SHA-256 or
-  /// was recorded with other parameters, or when the parent was not declared.
+  /// Records those memberships of the stage that meet one of these conditions: the store does not
+  /// have the membership; the store has it with a smaller target or another checkpoint interval;
+  /// another stage was declared for the membership's place after this stage. A larger target makes
+  /// a completed stage `declared` again. Throws std::invalid_argument when the stage's id is not a
+  /// SHA-256 or was recorded with other parameters, or when the parent was not declared.
   void declare_stage(const Stage& stage);
 
-  /// Starts an attempt and returns its number, from 1. With `from_sha256` the attempt continues
-  /// from this checkpoint of the run. `parent_checkpoint`, the initial state, is only recorded.
-  /// `fill` is for a run that is already completed: the attempt records missing checkpoints before
-  /// the last one, and then completes the run again. Throws NotFound when the run or the checkpoint
-  /// is unknown. Throws ConcurrencyConflict in these cases: this object or another program holds
-  /// the run; `fill` is true, but the run is not completed; `fill` is false, but the run is
-  /// completed or has reached a later step than the step from which the attempt starts.
+  /// Starts an attempt and returns its number, from 1. If `from_sha256` is given, the attempt
+  /// continues from the run's checkpoint with this SHA-256. `parent_checkpoint`, the initial state,
+  /// is only recorded. `fill` is for a run that is already completed: the attempt records missing
+  /// checkpoints before the last one, and then completes the run again. Throws NotFound when the
+  /// run or the checkpoint is unknown. Throws ConcurrencyConflict in these cases: this object or
+  /// another program holds the run; `fill` is true, but the run is not completed; `fill` is false,
+  /// but the run is completed or has reached a later step than the step from which the attempt
+  /// starts.
   std::uint64_t start_stage(const std::string& id, const nlohmann::json& host,
                             const std::optional<std::string>& from_sha256 = std::nullopt,
                             const std::string& parent_checkpoint = "", bool fill = false);
@@ -137,8 +138,8 @@ class Store {
   void interrupt_stage(const std::string& id, const std::string& why);
   void fail_stage(const std::string& id, const std::string& why,
                   const nlohmann::json& numbers = nlohmann::json::object());
-  /// `target_cycles` is the number of cycles that was reached. If the target of the run is larger,
-  /// the run becomes `declared` again.
+  /// `target_cycles` is the target of the attempt. If the recorded target of the run is larger by
+  /// now, the run becomes `declared` again.
   void complete_stage(const std::string& id,
                       const nlohmann::json& summary = nlohmann::json::object(),
                       std::optional<std::uint64_t> target_cycles = std::nullopt);
@@ -146,9 +147,9 @@ class Store {
   /// Marks the checkpoint as rejected, so that it is not used. Its file is kept.
   void reject_checkpoint(const std::string& id, const std::string& sha256, const std::string& why);
 
-  /// The newest checkpoint before `before_step` that can be loaded. If `damage` is given, an
-  /// error is added to it for each missing or damaged checkpoint, and a writable store rejects each
-  /// of these checkpoints.
+  /// The newest checkpoint before `before_step` that can be loaded. Missing and damaged
+  /// checkpoints are skipped. If `damage` is given, an error is added to it for each of them, and a
+  /// writable store marks them as rejected.
   std::optional<LoadedCheckpoint> newest_valid_checkpoint(
       const std::string& id, std::vector<std::string>* damage = nullptr,
       std::uint64_t before_step = UINT64_MAX);
@@ -215,11 +216,11 @@ class Store {
   /// Stores a regenerated checkpoint. Throws StoreDamaged when its bytes differ from the record.
   void restore_checkpoint(const CheckpointRecord& record, const Checkpoint& checkpoint);
 
-  /// Merges other stores into this one (merge.cpp). If `runs` is not empty, merges only manifests,
-  /// files of grain positions and these runs, and `runs` must include all parents. Throws NotFound
-  /// when a source is not a store, and MachineError while a process computes a run of this store.
-  /// Throws StoreDamaged, before anything is written, when a source is damaged, or when two stores
-  /// hold different states of one run at one step or different runs under one id.
+  /// Merges other stores into this one (merge.cpp). If `runs` is not empty, merges only these runs,
+  /// all manifests and all files of grain positions. `runs` must then contain all parents, too.
+  /// Throws NotFound when a source is not a store, and MachineError while a process computes a run
+  /// of this store. Throws StoreDamaged, before anything is written, when a source is damaged, or
+  /// when two stores hold different states of one run at one step or different runs under one id.
   std::vector<MergeReport> merge(const std::vector<std::filesystem::path>& sources,
                                  const std::set<std::string>& runs = {});
 

@@ -37,8 +37,8 @@ struct Command {
 };
 
 /// A running program. Its standard input is empty. The program has its own process group, so Ctrl-C
-/// on a terminal does not stop it. The program gets SIGTERM when the thread that started it ends.
-/// The destructor sends SIGTERM, and SIGKILL if the program still runs 5 s later.
+/// on a terminal does not stop it. When the thread that started the program ends, the program gets
+/// SIGTERM. The destructor sends SIGTERM, and SIGKILL if the program still runs 5 s later.
 class ChildProcess {
  public:
   /// Throws ProgramError when the program cannot be started.
