@@ -37,7 +37,7 @@ const std::vector<std::string> kRemoved = {
     "SBATCH_WAIT",        "SLURM_ARRAY_*",       "SLURM_MEM_PER_*",
     "SLURM_NTASKS_PER_*", "SLURM_RESTART_COUNT", "SLURM_TRES_PER_TASK"};
 
-// Slurm's programs wait 10 s for an answer of Slurm's controller. This program waits longer.
+// Slurm's programs wait up to 10 s for Slurm's controller, so shearcell waits longer for them.
 constexpr double kAnswerSeconds = 15;
 
 // Longest text given to Slurm. std::regex recurses for each character, so a long text would

@@ -52,9 +52,9 @@ struct QueuedTask {
 /// Throws ProgramError if `sbatch` is not installed.
 void require_slurm();
 
-/// Writes the job's script into the folder, queues the job in this folder and returns its number.
-/// Throws ProgramError if sbatch refused the job and the job is not in the queue. Throws
-/// MachineError if it is unknown whether the job is queued.
+/// Writes the job's script into `folder`, calls sbatch there, and returns the number of the queued
+/// job. Throws ProgramError if sbatch failed and the job is not in the queue. Throws MachineError
+/// if it is unknown whether the job is queued.
 std::string queue_job(const Job& job, const std::filesystem::path& folder);
 
 /// All waiting, running, suspended and ending jobs with these names, of all users and

@@ -53,7 +53,7 @@ for start in 1 2 3 4; do
   wait "$program"; code=$?
   while [ -n "$signalled" ]; do signalled=; wait "$program"; code=$?; done
   [ "$code" -gt 128 ] && [ -z "$again$stopped" ] || break
-  echo "The program was killed (code $code), start $start."
+  echo "Attempt $start: the program was killed (code $code)."
   leave=--leave-failed
 done
 if [ -n "$again" ] && [ "$code" -ge 85 ]; then

@@ -26,7 +26,7 @@ namespace shearcell {
 struct Share {
   std::vector<std::string> packings;  ///< ids of the `prepare` stages
   std::vector<std::string> runs;      ///< ids of the unfinished stages that start from `packings`
-  double particle_steps = 0;          ///< remaining work, including the packings
+  double particle_steps = 0;          ///< remaining work; includes settling the packings
   double core_seconds = 0;            ///< time on one core [s], estimated with Rates (outlook.hpp)
 };
 
@@ -44,7 +44,7 @@ std::vector<Share> share_out(std::vector<Share> packings, std::size_t tasks);
 struct JobOptions {
   std::string partition;
   std::string account;
-  std::string time;                 ///< time limit of each start of a task, in Slurm's format
+  std::string time;                 ///< time limit of a task, in Slurm's format
   std::size_t cpus = 0;             ///< cores of a task; 0 if not chosen yet
   std::size_t threads = 1;          ///< threads of each run
   std::size_t warn_seconds = 120;   ///< time between Slurm's warning and the limit
@@ -62,9 +62,9 @@ struct Proposal {
 };
 
 /// Divides the packings of the plans, each with all its runs, into shares. A packing is left out if
-/// `busy` contains it or one of its runs. Each share is one task. If `job.cpus` is 0, each task
-/// gets `job.threads` cores for each run of the share with the most runs, but at most 16 cores (or
-/// `job.threads` cores, if that is more).
+/// `busy` contains it or one of its runs. Each share is one task. If `job.cpus` is 0, all tasks get
+/// the same number of cores: `job.threads` times the number of runs in the largest share, but at
+/// most max(16, `job.threads`).
 Proposal propose(const std::vector<Plan>& plans, const Store* store,
                  const std::set<std::string>& busy, std::size_t most_tasks, JobOptions job);
 
@@ -113,7 +113,7 @@ std::vector<Submission> unfinished_submissions(const Store& store);
 std::uint64_t merge_tasks(Store& store, const Submission& submission);
 
 /// Runs that are queued or being computed: all runs of submissions with jobs in the queue, all runs
-/// that a process is computing, and the packings of these runs that are not yet settled.
+/// that a process is computing, and the unsettled packings of these runs.
 std::set<std::string> busy_runs(const Store& store, const std::vector<Submission>& open);
 
 /// Writes `FOLDER.progress.json` for the task's store FOLDER, in one atomic step. While the

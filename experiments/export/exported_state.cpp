@@ -66,7 +66,7 @@ void add_facts(const CheckpointRecord& record, const Run& selected, const Measur
     if (value.is_number() || value.is_string()) frame.parameters.emplace_back(key, value);
   }
   frame.stiffness_N_per_m =
-      measures.number("raised_stiffness_N_per_m");  // NaN unless the run is a stiffening
+      measures.number("raised_stiffness_N_per_m");  // NaN unless the stage is of kind `stiffen`
   const nlohmann::json stated = member_of(parameters, "stiffness_N_per_m");
   if (std::isnan(frame.stiffness_N_per_m) && stated.is_number()) {
     frame.stiffness_N_per_m = stated.get<double>();

@@ -15,9 +15,9 @@ namespace shearcell {
 /// Writes a frame, or throws std::runtime_error.
 using FrameWriter = std::function<void(const ExportedState&)>;
 
-/// H5MD 1.1 in one file. particles/all holds box, position, velocity, id, species
-/// (ExportedState::type), mass, radius and the measures of each grain. observables holds every
-/// scalar. Attributes of the group parameters give the run and its parameters. Lengths are in nm,
+/// H5MD 1.1 in one file. `particles/all` holds box, position, velocity, id, species
+/// (ExportedState::type), mass, radius and the measures of each grain. `observables` holds every
+/// scalar. Attributes of the group `parameters` give the run and its parameters. Lengths are in nm,
 /// because MDAnalysis does not support metres. `frames`: number of frames that will be written.
 FrameWriter h5md_writer(const std::filesystem::path& file, std::size_t frames);
 
@@ -46,8 +46,8 @@ FrameWriter lammps_writer(const std::filesystem::path& folder);
 FrameWriter contacts_writer(const std::filesystem::path& folder);
 
 /// Writes FOLDER/run.json for formats that are folders: {"run", ..., "parameters": {...}, "frames":
-/// [{"cycle", "checkpoint", scalars}]}. `frames`: as for vtk_writer(). The
-/// file is written when the last frame is written.
+/// [{"cycle", "checkpoint", scalars}]}. `frames`: number of frames; run.json is written after the
+/// last one.
 FrameWriter facts_writer(const std::filesystem::path& folder, std::size_t frames);
 
 }  // namespace shearcell

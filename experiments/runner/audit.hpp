@@ -42,7 +42,8 @@ struct MeasureCheck {
 
 /// Recomputes measures of `count` sampled checkpoints of `store` and compares them with those in
 /// folder/derived.sqlite. The relative tolerance is 1e-9, because mathematical libraries differ in
-/// the last bits. For pruned checkpoints, compares the cached measures with the log in `folder`.
+/// the last bits. For all pruned checkpoints, compares the digests of the measures in
+/// folder/derived.sqlite with the digests in the log of the store `folder`.
 MeasureCheck check_measures(const Store& store, const std::filesystem::path& folder,
                             std::size_t count, std::uint64_t seed);
 

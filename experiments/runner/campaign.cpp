@@ -136,7 +136,7 @@ class Campaign {
   }
 
   CampaignResult run(std::size_t workers) {
-    // Shows other processes that this process is alive, even during long simulations.
+    // Tells other processes that this process is alive, even during long simulations.
     // If a lease is lost, the store rejects records of the stage that was taken over.
     const Repeated heartbeat(
         std::chrono::duration<double>(store_.lease_seconds() / 4),
@@ -281,7 +281,8 @@ class Campaign {
     }
     if (held_by_another(job.id)) return put_off(job);
     if (was_held && stage.state == StageState::failed) {
-      note(job, &CampaignResult::failed, stage.error);  // it would fail in this process, too
+      // The stage failed in another process. It would fail in this process, too.
+      note(job, &CampaignResult::failed, stage.error);
       return JobState::ended;
     }
     progress_.begin(job);

@@ -147,8 +147,8 @@ class Measuring {
       }
       const CheckpointRecord* other = sources_.earlier(record, *providers_[p], task.every);
       if (other != nullptr) outcome_.earlier.insert(other->sha256);
-      // The log may have digests of other results of this checkpoint, but none of this result. The
-      // cached result is then used only if the checkpoint is not pruned: without the checkpoint's
+      // If the log has digests of other results of this checkpoint, but no digest of this result,
+      // the cached result is used only if the checkpoint is not pruned: without the checkpoint's
       // file, nothing can confirm the result.
       if (!found[p] ||
           !sources_.is_as_pruned(record, {task.keys[p], *found[p]}).value_or(!is_pruned)) {
@@ -298,7 +298,7 @@ void MeasureSources::read_run(const std::string& run) {
     auto pruned = std::get<events::CheckpointPruned>(events::decode(event));
     if (pruned.measures.empty()) continue;
     Digests& all = entry->second.digests[pruned.checkpoint.sha256];
-    pruned.measures.merge(all);  // a later event replaces a digest
+    pruned.measures.merge(all);  // digests from later events replace earlier ones
     all = std::move(pruned.measures);
   }
   if (!entry->second.facts.drive) return;

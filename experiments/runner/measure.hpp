@@ -31,8 +31,9 @@ struct MeasureOptions {
   /// Names of further providers. Whenever a checkpoint is analysed, their results are also computed
   /// and cached for later calls. These providers must not need earlier checkpoints.
   std::vector<std::string> also = {};
-  /// First and last cycle. Measures that need a simulation (ComputedFrom::simulation) are computed
-  /// only for checkpoints in this range; if empty, for all checkpoints.
+  /// First and last cycle of a range. Measures that need a simulation (ComputedFrom::simulation)
+  /// are computed only for checkpoints in this range. Without a range, they are computed for all
+  /// checkpoints.
   std::optional<std::array<std::uint64_t, 2>> simulated = {};
   bool only_cached = false;  ///< read no checkpoint; results that are not cached are missing
 };
@@ -107,7 +108,8 @@ class MeasureSources {
     /// `named`: number of measures with a digest in the log. `absent`: how many of them are not
     /// cached.
     std::size_t named = 0, absent = 0;
-    std::string altered;  ///< about a cached measure whose digest differs from the log, or ""
+    /// Error message if the digest of a cached measure is not the logged digest; otherwise "".
+    std::string altered;
   };
   /// Compares the cached measures of a pruned checkpoint with the digests in the log.
   PrunedMeasures compare_pruned(const CheckpointRecord& record, DerivedCache& cache) const;

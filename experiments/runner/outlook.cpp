@@ -24,8 +24,9 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kMostListed = 1'000'000;  // longer lists are refused (forged stores)
-constexpr double kMostCounted = 10'000;         // larger numbers of checkpoints are estimated
+// Largest number of a stage's checkpoints to list. Only forged stores have more.
+constexpr std::size_t kMostListed = 1'000'000;
+constexpr double kMostCounted = 10'000;  // larger numbers of checkpoints are estimated
 
 std::optional<Until> until_of(const Stage& stage, const Ask& ask) try {
   if (ask.until.is_null()) return std::nullopt;
@@ -79,8 +80,8 @@ End end_by(const Stage& stage, const Ask& ask, std::span<const CheckpointRecord>
     if (std::fmod(one.cycle, every) != 0) continue;
     const auto known = measures.find(one.sha256);
     if (known == measures.end() || !known->second.numbers.contains(until->measure)) {
-      // A recorded end is valid only for requests of at most stage.target_cycles cycles. For more
-      // cycles, the checkpoint must be measured.
+      // A recorded end is valid only for requests of at most stage.target_cycles cycles. For a
+      // request of more cycles, the checkpoint `one` must be measured.
       if (ask.target_cycles <= stage.target_cycles) {
         end.reached = recorded_reach(stage, *until, every);
       }

@@ -67,8 +67,8 @@ Outlook outlook(const Stage& stage, std::span<const Ask> asks,
 /// unreadable record, which `verify` reports.
 std::optional<Drive> shear_drive(const Stage& stage);
 
-/// Returns when a shear must record checkpoints: one entry for each request, except requests for 0
-/// cycles. Throws StoreDamaged if a request is invalid.
+/// The checkpoint schedule of a shear: one entry for each request, except requests for 0 cycles.
+/// Throws StoreDamaged if a request is invalid.
 std::vector<CheckpointCadence> cadences_of(const Stage& stage, std::span<const Ask> asks,
                                            const Drive& drive);
 
@@ -164,7 +164,7 @@ class Rates {
   explicit Rates(const std::vector<Stage>& stages);
 
   /// The mean rate of the recorded runs that used the stage's engine. If these runs took less than
-  /// 1 s in total, returns a rate that another machine reached with about as many grains.
+  /// 1 s in total: a rate measured on another machine, interpolated to the number of grains.
   Rate of(const Stage& stage) const;
 
  private:

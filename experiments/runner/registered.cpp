@@ -10,9 +10,9 @@
 namespace shearcell {
 namespace {
 
-// Runs are grouped by the SHA-256 of their manifest. Packings have this text instead, so the
-// packings of all versions of an experiment form one group, and different packings get different
-// names.
+// Runs are grouped by experiment, SHA-256 of the manifest, and scale. For packings, this text
+// replaces the SHA-256, so that all versions of an experiment share one group of packings, in which
+// different packings get different names.
 const std::string kPackings = "packings";
 
 /// All registered manifests, oldest first. If an experiment returned to an earlier manifest, this

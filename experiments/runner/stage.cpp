@@ -278,8 +278,8 @@ class OwnEngine final : public Engine {
   StageProgress progress_;
 };
 
-/// Advances to `step`, or to the end of the stage if the end comes first. Calls the function
-/// `between` with the progress about every 50 ms.
+/// Advances to `step`, or to the end of the stage if the end comes first. About every 50 ms, calls
+/// the function `between` with the progress.
 StageProgress advance_to(OwnEngine& engine, std::uint64_t step, const auto& between) {
   StageProgress progress;  // stays at cycle 0 if `step` is 0
   while (engine.step() < step && !progress.finished) {
@@ -341,7 +341,7 @@ class LammpsEngine final : public Engine {
   }
 
  private:
-  // Makes the frame the newest state. Computes one step with our engine for the watchdog's checks.
+  // Stores the frame in state_. Computes one step with our engine for the watchdog's checks.
   bool take(std::optional<State> frame) {
     if (!frame) return false;
     state_ = std::move(*frame);
@@ -440,7 +440,7 @@ class StageAttempt {
   bool computed() const { return computed_; }
 
  private:
-  // Records the start, calls compute(), and records the end of an attempt that fails.
+  // Records the start of an attempt and calls compute(). After an exception, records the end, too.
   StageOutcome attempt(const Beginning& beginning, const nlohmann::json& facts, bool filling,
                        const std::function<StageOutcome()>& compute) {
     const std::optional<CheckpointRecord> first = beginning.record;

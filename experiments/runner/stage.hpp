@@ -60,8 +60,8 @@ std::optional<CheckpointRecord> starting_state(const Store& store, const Stage& 
 
 /// Where a recomputed state differs from the recorded one.
 struct Divergence {
-  std::uint64_t same_step = 0;   ///< last step at which the states are known to agree
-  std::uint64_t first_step = 0;  ///< first step at which the states are known to differ
+  std::uint64_t same_step = 0;   ///< last step at which both states are known to be equal
+  std::uint64_t first_step = 0;  ///< first step at which both states are known to differ
   /// What differs in the states: "position", "velocity", "wall_height" or "wall_velocity". If the
   /// states are equal: "cycle", "time_s", "theta", the name of an observable, or "file". "" if
   /// unknown.
@@ -89,12 +89,12 @@ std::optional<std::string> why_not_again(const Store& store, const CheckpointRec
 /// Recomputes a checkpoint from the nearest earlier checkpoint whose file exists, or from the
 /// beginning of the stage. Compares the recomputed state, cycle, time, tilt and observables with
 /// the recorded ones, and records ReplayVerified or ReplayDiverged. Throws FilePruned if the replay
-/// would have to start from a pruned state of the parent.
+/// would have to start from a state of the parent stage, and the file of this state was pruned.
 Replay verify_by_replay(Store& store, const CheckpointRecord& record, std::size_t threads = 1);
 
 /// Recomputes a checkpoint like verify_by_replay(), and writes its pruned, missing or damaged file
 /// again. If the new bytes do not have the recorded SHA-256, records ReplayDiverged and writes no
-/// file. If the replay must start from a pruned state of the parent, restores that state first.
+/// file. If the replay needs a pruned state of the parent stage, restores this state first.
 Replay regenerate_checkpoint(Store& store, const CheckpointRecord& record, std::size_t threads = 1);
 
 }  // namespace shearcell

@@ -75,7 +75,8 @@ class Deck {
     return std::ranges::find(cell_.wall_grains, side, &WallGrain::side) != cell_.wall_grains.end();
   }
 
-  // The fraction b dt/2m by which a grain's mass is increased, so that its drag b is implicit.
+  // The fraction b dt/2m by which a grain's mass is increased. The increase makes LAMMPS's explicit
+  // drag equal to an implicit drag b.
   double added(double drag) const { return for_users_ ? 0 : 0.5 * drag * scene_.time_step; }
 
   void atoms(std::string_view units, std::string_view data) {
@@ -273,7 +274,8 @@ fix drag grains addforce v_drag_x v_drag_y v_drag_z)",
       force = fmt::format("({0})*(v_phase<{1})+({2:.17g}-mass(wall)/dt)*vy[{3}]*(v_phase>={1})",
                           force, task_.drive.steps_per_cycle, scene_.wall_drag * area_ * m_, wall_);
     }
-    add(text_, "\n# Forces on the moving wall: load, contacts of plane and wall grains, drag.");
+    add(text_,
+        "\n# Forces on the moving wall: load, contacts with its plane and its wall grains, drag.");
     add(text_, "variable push equal {}\nfix push wall addforce 0 v_push 0", force);
     if (scene_.wall_drag != 0) {
       add(text_, "fix wall_drag wall viscous {:.17g}", scene_.wall_drag * area_ * m_);
@@ -303,8 +305,8 @@ fix drag grains addforce v_drag_x v_drag_y v_drag_z)",
     add(text_, "thermo {}\nthermo_style custom step\nthermo_modify flush yes", task_.check_every);
   }
 
-  // In a frame, the velocities must belong to half a step before the positions. In LAMMPS, both
-  // belong to the same time, so f/m dt/2 is subtracted from the velocities of LAMMPS.
+  // The time of a frame's velocities must be half a step before the time of its positions. In
+  // LAMMPS, both times are equal, so f/m dt/2 is subtracted from the velocities of LAMMPS.
   void frames() {
     for (const char axis : {'x', 'y', 'z'}) {
       add(text_, "variable half_{0} atom v{0}-{1:.17g}*f{0}/mass", axis, half_step());
