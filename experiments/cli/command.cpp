@@ -93,14 +93,16 @@ void order_by_start(std::vector<Manifest>& manifests) {
       });
     };
     const auto ready = std::find_if_not(next, manifests.end(), waits);
-    if (ready == manifests.end()) return;  // starts form a circle; expand() reports missing runs
+    // If each remaining manifest starts from runs of another one, no order is possible. expand()
+    // then reports the runs that do not exist.
+    if (ready == manifests.end()) return;
     std::rotate(next, ready, ready + 1);
   }
 }
 
 // Figures show only the runs of the newest manifest of each experiment and scale. `known` are the
 // runs in the store and in earlier plans of the same command. Warns if figures will omit some of
-// them after this plan is run.
+// these runs after this plan is run.
 void warn_of_other_version(const Plan& plan, const std::vector<Stage>& known, Context& context) {
   const Manifest& manifest = plan.manifest;
   std::set<std::string> planned;
@@ -118,8 +120,8 @@ void warn_of_other_version(const Plan& plan, const std::vector<Stage>& known, Co
        fmt::format(
            "{}: the newest manifest of experiment {} differs from this file and has {} "
            "that the plan of this file lacks. If you run this plan, figures will omit the runs "
-           "that it lacks. To show all runs, run one manifest that lists all of them; only missing "
-           "runs are computed.",
+           "that the plan lacks. To show all runs, run one manifest that lists all of them; runs "
+           "that are already in the store are not computed again.",
            manifest.file, manifest.experiment, counted(static_cast<std::size_t>(left_out), "run")));
 }
 

@@ -104,10 +104,10 @@ void add_common_options(CLI::App& command, Context& context, const std::string& 
 void add_expand_options(CLI::App& command, ExpandOptions& options);
 
 /// Reads and expands each manifest once. If the runs of manifest B start from runs of manifest A, A
-/// comes before B in the result. Passes all warnings to warn(). Also warns of each manifest that
-/// lacks runs of another version of the same manifest. This other version may be in the store or
-/// may come earlier in the result. If `brief` is true and a manifest has more than three warnings,
-/// prints the first warning and counts the others.
+/// comes before B in the result. Passes all warnings to warn(). Also warns if a plan lacks runs
+/// that another version of its manifest has. That version is the newest in the store or comes
+/// earlier in the result. If `brief` is true and a manifest has more than three warnings, prints
+/// the first warning and counts the others.
 std::vector<Plan> load_plans(const std::vector<std::string>& paths, const ExpandOptions& options,
                              Context& context, bool brief = true);
 
@@ -187,7 +187,7 @@ nlohmann::json to_json(const std::vector<Facts>& rows);
 
 /// Prints a table; all rows must have the same headings. Columns are as wide as their longest cell,
 /// and numbers are right-aligned. On a terminal, states are coloured, and the widest text columns
-/// are narrowed to fit; cut texts end with ~.
+/// are narrowed to fit; a text that was cut ends with ~.
 void print_table(const std::vector<Facts>& rows);
 
 /// Prints "HEADING  text" for each fact that has a heading. Further lines of a text are indented

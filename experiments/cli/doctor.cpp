@@ -73,8 +73,8 @@ Check filesystem(const fs::path& place) {
   }
   return {
       "file system", fmt::format("network (type {:#x})", type), "slow",
-      "SQLite needs file locks, which are unreliable on a network: keep the store on a local disk, "
-      "and `merge` it later"};
+      "SQLite needs file locks, which are unreliable on a network file system: keep the store on a "
+      "local disk, and copy it later with `merge`"};
 }
 
 Check writing(const std::string& store, const fs::path& place) {

@@ -41,7 +41,8 @@ struct ExportFormat {
   const char* name;
   const char* title;
   const char* ending;  ///< extension of the file name; "" if the format is a folder
-  /// Returns a function that writes `frames` frames to `out`. Null for an RO-Crate (no frames).
+  /// Returns a function that writes `frames` frames to `out`. `writer` is null for an RO-Crate,
+  /// which has no frames.
   FrameWriter (*writer)(const fs::path& out, std::size_t frames, LengthUnit unit);
 };
 
@@ -69,8 +70,8 @@ struct CycleRange {
   double last = std::numeric_limits<double>::infinity();
   double every = 0;  ///< step [cycles]; 0 selects all checkpoints
 
-  /// Whether `cycle` is selected. `near`: half a time step [cycles]. Thus 3.3 selects the
-  /// checkpoint at the time step nearest to cycle 3.3.
+  /// Whether `cycle` is within `near` of a selected cycle. `near`: half a time step [cycles]. For
+  /// example, --cycles 3.3 selects the checkpoint at the time step nearest to cycle 3.3.
   bool holds(double cycle, double near) const {
     return cycle >= first - near && cycle <= last + near &&
            (every == 0 || std::abs(std::remainder(cycle - first, every)) <= near);
@@ -201,8 +202,9 @@ std::vector<std::string> write_records(const Store& store, const PlacedRun& run,
 
 /// Writes the run to `out` and returns the names of the files. `out` must not exist, unless it is
 /// an earlier crate of the run. A measure that needs an unreadable earlier checkpoint is NaN, and
-/// `unread` reports that checkpoint. Throws NothingToExport, and
-/// FilePruned if the end of the run cannot be determined without a pruned checkpoint.
+/// `unread` reports that checkpoint. Throws NothingToExport if no checkpoint of
+/// the selected cycles is stored. Throws FilePruned if the end of the run cannot be determined
+/// without a pruned checkpoint.
 std::vector<std::string> write_run(const Store& store, const PlacedRun& run,
                                    const ExportFormat& format, const ExportOptions& options,
                                    const fs::path& out, MeasureOutcome& unread) {

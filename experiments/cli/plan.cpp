@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `plan`: lists the runs of manifests, which runs are done, and the cost of the other runs.
+// `plan`: lists the runs of manifests, shows whether each run is done, and estimates the cost of
+// the runs that are not done.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -177,8 +178,8 @@ void note_looks(const std::vector<Plan>& plans, const std::vector<Line>& lines, 
   }
 }
 
-// Estimates the particle-steps that are left if each `until` is reached at the same cycle as in
-// earlier runs, on average. Null if no run has an `until`, or if some `until` was never reached.
+// Estimates the particle-steps that are left if each `until` ends its runs at the mean cycle at
+// which it ended earlier runs. Null if no run has an `until`, or if some `until` was never reached.
 nlohmann::json left_until(const std::vector<Line>& lines, const std::vector<Stage>& known) {
   std::map<nlohmann::json, std::optional<double>>
       ends;  // `until` -> expected last cycle; cached, since expected_end() reads all runs
@@ -212,8 +213,8 @@ void print_until(const std::vector<Line>& lines, const nlohmann::json& left, dou
   fmt::print("      `until` ({}): ", fmt::join(ends, "; "));
   if (left.is_null()) {
     fmt::print(
-        "fewer particle-steps; an estimate needs, for each condition, a run that the condition "
-        "has ended\n");
+        "fewer particle-steps; their number can be estimated after each condition has ended at "
+        "least one run\n");
   } else {
     fmt::print(
         "about {:.3g} particle-steps ({:.0f} % of the number above) if `until` ends these runs at "
@@ -300,7 +301,8 @@ void plan(const PlanOptions& options, Context& context) {
   for (const Line& line : lines) {
     runs_planned += is_packing(line) ? 0 : 1;
     if (!line.look.done) left_runs.insert(line.run);
-    const auto asks_more = [&](const Membership& m) {  // an earlier command requested more cycles
+    // Whether an earlier command requested more cycles than this plan.
+    const auto asks_more = [&](const Membership& m) {
       return m.ask.target_cycles > line.run->ask.target_cycles;
     };
     longer += std::ranges::any_of(line.stage.memberships, asks_more) ? 1 : 0;

@@ -86,8 +86,8 @@ void add_report(CLI::App& app, Context& context) {
       ->type_name("FILE");
   add_selection_options(*sub, options.runs);
   sub->get_option("--scale")->expected(1)->description(
-      "Only runs of this scale. Default: runs of all scales; each figure shows only the scale "
-      "of the run that was added last");
+      "Only runs of this scale. Default: runs of all scales. A figure shows runs of one scale: "
+      "that of its most recently added run");
   sub->add_option("--run", packings.runs,
                   "Show these runs in 3D instead of the last run of each variant")
       ->type_name("RUN");
@@ -99,7 +99,7 @@ void add_report(CLI::App& app, Context& context) {
              100000)
       ->capture_default_str();
   add_number(*sub, "--packings-mb", command->megabytes,
-             "Largest total size of the packings in 3D; fewer checkpoints are shown if necessary",
+             "Largest total size of the 3D packings in the file. If not all fit, fewer are shown",
              "MB", 0, 1000)
       ->capture_default_str();
   sub->add_flag_callback(

@@ -148,7 +148,8 @@ Facts facts_of(const Store& store, const Stage& stage) {
       {"parameters", effective_parameters(stage.resolved)}};
 }
 
-/// The inputs of the run. Their hash is its id. Parameters without effect on the run are left out.
+/// The inputs of the run. The hash of the inputs is the id of the run. Parameters without effect on
+/// the run are left out.
 Facts facts_of_id(const Stage& stage) {
   Facts facts;
   for (const auto& [key, value] : stage.resolved.items()) {
@@ -425,8 +426,8 @@ std::optional<FigureRecord> find_record(const Store& store, const std::string& n
   return std::move(found.begin()->second);
 }
 
-/// Throws NotFound if `name` is an experiment, since `show` shows only one run, or if `name` is
-/// similar to the name of an experiment or of a drawn figure.
+/// Throws NotFound if `name` is the name of an experiment, which `show` cannot show, or is similar
+/// to the name of an experiment or of a drawn figure.
 void require_no_name(const Store& store, const std::string& name,
                      const std::vector<Stage>& stages) {
   std::set<std::string> known;

@@ -151,8 +151,9 @@ Facts facts(const PlacedRun& listed, const Membership& shown, const View& view) 
 struct Estimate {
   std::string problem;  ///< why the work is unknown (a run cannot be read); "" if it is known
   Work work;
-  std::size_t at_a_time = 1;  ///< number of stages computed at a time
-  bool running = false;  ///< a run is computed now; if false, seconds() is the time on all cores
+  /// Number of stages computed at a time. If none is computed now, the number on all usable cores.
+  std::size_t at_a_time = 1;
+  bool running = false;  ///< whether a stage is computed now
   bool at_most = false;  ///< the time is an upper limit: `until` may end runs early
 
   bool any() const { return problem.empty() && work.stages > 0; }

@@ -206,7 +206,7 @@ std::string check_sbatch(const std::string& text) {
   for (const std::string taken : {"--array", "--clusters", "--test-only", "--wait", "--wrap"}) {
     if (!taken.starts_with(option)) continue;  // sbatch accepts abbreviated options
     return fmt::format(
-        "'{}': remove {}. With this option, `submit` cannot queue its jobs and follow their "
+        "'{}': remove {}. With this option, `submit` cannot queue its jobs or cannot follow their "
         "progress. (--array-size limits the number of tasks. To use another cluster, run `submit` "
         "there.)",
         printable(text), taken);

@@ -92,10 +92,10 @@ void add_table(CLI::App& app, Context& context) {
       "apply):\n" +
           columns_text +
           "Columns whose values need a simulation are written only with an option, such as "
-          "--rest.\ncritical_size and all columns below it are written only with --per run. With "
-          "--per run, all other\nmeasures are those of the newest checkpoint of each run. A run "
-          "that several experiments share has\nrows for each experiment, up to the cycles that "
-          "the experiment asks for.\n\nCurves:\n" +
+          "--rest.\ncritical_size and all columns listed after it are written only with --per run. "
+          "With --per run, all\nother measures are those of the newest checkpoint of each run. A "
+          "run that several experiments share\nhas rows for each experiment, up to the cycles "
+          "that the experiment asks for.\n\nCurves:\n" +
           curves_text +
           "Examples:\n"
           "  shearcell table --experiment drag --out drag.csv\n"

@@ -27,8 +27,8 @@ struct WantedFigure {
   /// The manifests of the store. All figures of one command share them, so that each manifest is
   /// read only once. If null, collect_runs() reads the manifests.
   ReadManifests manifests = {};
-  /// If this program, not the manifest, defines the figure's plots: a text that names the version
-  /// of the program. Otherwise "". (Older manifests only list names of figures.)
+  /// Names the version of this program if the program's own plots are used because the manifest
+  /// defines none for this figure (older manifests only list names of figures). Otherwise "".
   std::string plots = {};
 
   /// "drag/S2", for messages.

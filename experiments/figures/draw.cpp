@@ -153,7 +153,8 @@ std::string verdict_text(const ComputedFigure& figure) {
 /// Sets Verdict::primary from the key `primary` of the experiment's manifest at this scale. A
 /// figure of all experiments uses all manifests. A manifest names a claim by the claim's id, with
 /// or without the value of `for_each`. Older manifests name a claim by its statement. If all runs
-/// are selected, adds a note for each id with a value of `for_each` that has no verdict.
+/// are selected, adds a note for each id CLAIM@VALUE that has no verdict although CLAIM has
+/// verdicts for other values.
 void mark_primary(const std::vector<RegisteredManifest>& manifests, const RunSelection& selected,
                   ComputedFigure& figure) {
   for (const RegisteredManifest& manifest : manifests) {
@@ -161,7 +162,7 @@ void mark_primary(const std::vector<RegisteredManifest>& manifests, const RunSel
     for (const Scale& scale : scales_of(manifest.content)) {
       if (scale.name != figure.scale && !scale.name.empty()) continue;
       for (const PrimaryClaim& primary : scale.primary) {
-        bool named = false, same_claim = false;  // same_claim: ids are equal without @VALUE
+        bool named = false, same_claim = false;  // same_claim: ids are equal if @VALUE is ignored
         for (Verdict& verdict : figure.verdicts) {
           const std::string claim = verdict.id.substr(0, verdict.id.find('@'));
           const bool is_it =

@@ -70,8 +70,8 @@ MeasureOutcome keep_measures(const Store& store, std::vector<CheckpointRecord>& 
       for (const CheckpointMeasures& one : run.checkpoints) {
         for (const std::string& name : one.lacking) {
           // The provider may need an earlier checkpoint. If that checkpoint is already pruned, as
-          // can happen in a continued run, the measure cannot be computed. The file of `one` is
-          // then not kept for this measure.
+          // can happen in a continued run, the measure cannot be computed, and keeping the file
+          // of `one` would not help.
           const auto* earlier = sources.earlier(one, provider(name), run.ask.checkpoint_every);
           const bool lost = earlier != nullptr && earlier->state == CheckpointState::pruned;
           if (!lost) unmeasured.insert(one.sha256);

@@ -15,11 +15,11 @@ namespace shearcell {
 /// for each value that an experiment requests. A measure that needs a simulation is computed only
 /// if a figure of a manifest needs it.
 ///
-/// If a measure of a checkpoint could not be computed, the checkpoint is removed from `records`, so
-/// that its file is kept; the outcome gives the reason. Exception: if the measure needs an earlier
-/// checkpoint that is already pruned, keeping the file would not help, so this checkpoint stays in
-/// `records`. If measures cannot
-/// be cached, empties `records`. The cache is on disk when the function returns.
+/// On return, `records` lists the checkpoints whose files can be deleted. A checkpoint is removed
+/// from `records` if one of its measures could not be computed; the outcome gives the reason.
+/// Exception: if this measure needs an earlier checkpoint that is already pruned, keeping the file
+/// would not help, so the later checkpoint stays in `records`. If measures cannot be cached,
+/// `records` becomes empty. The cache is on disk when the function returns.
 MeasureOutcome keep_measures(const Store& store, std::vector<CheckpointRecord>& records,
                              const MeasureOptions& options);
 

@@ -28,8 +28,9 @@ using nlohmann::ordered_json;
 struct Row {
   const FrameRun* run = nullptr;
   const CheckpointMeasures* checkpoint = nullptr;  // null for a run that was not started
-  const FrameRun* history = nullptr;  // the run with only its checkpoints at whole cycles, from
-                                      // which onsets are found; null if the row shows no onsets
+  // Copy of the run with only the measured checkpoints at whole cycles, in which onsets are found.
+  // Null if the row shows no onsets.
+  const FrameRun* history = nullptr;
 };
 
 struct Column : TableColumn {

@@ -47,7 +47,8 @@ std::byte byte_of(const GrainField& field, double value) {
   return static_cast<std::byte>(std::lround(most * std::clamp(share, 0.0, 1.0)));
 }
 
-constexpr std::size_t kFactsInPage = 2500;  // facts and profiles of a frame, as JSON [bytes]
+/// Estimated size of the facts and profiles of a frame, as JSON [bytes].
+constexpr std::size_t kFactsInPage = 2500;
 
 struct ChosenRun : Run {
   std::vector<CheckpointRecord> checkpoints = {};  // after fit() only those that the page shows

@@ -34,9 +34,9 @@ struct Packings : MeasureOutcome {
 };
 
 /// Encodes checkpoints of the experiments, in the order of `experiments`. If the checkpoints exceed
-/// the budget, each run shows fewer, evenly spaced checkpoints, including its first and last. If
-/// the last checkpoints of all runs exceed the budget, the last runs are left out. The same store
-/// gives the same result.
+/// the budget, each run shows fewer checkpoints, chosen by evenly(). If one checkpoint of each run
+/// already exceeds the budget, runs at the end of the list are left out. The same store gives the
+/// same result.
 Packings collect_packings(const Store& store, const std::vector<std::string>& experiments,
                           const RunSelection& selection, const PackingChoice& choice,
                           std::size_t workers, const ReadProgress& report);
@@ -59,9 +59,10 @@ struct EncodedFrame {
   std::vector<std::byte> bytes;
 };
 
-/// A further measure of each grain, which can colour the grains. Each grain has one byte: the class
-/// number, or 254 (value - low) / (high - low). On a logarithmic scale, the logarithms of
-/// value, low and high are used. The byte of an unknown value is 255.
+/// A measure by which the page can colour the grains, in addition to the named arrays of
+/// EncodedFrame::bytes. Each grain has one byte: the class number, or
+/// 254 (value - low) / (high - low). On a logarithmic scale, the logarithms of value, low and high
+/// are used. The byte of an unknown value is 255.
 struct GrainField {
   const Measure* measure = nullptr;
   double low = 0, high = 0;
