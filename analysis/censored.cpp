@@ -157,8 +157,8 @@ std::vector<double> plain(CensoredValues values) {
   return numbers;
 }
 
-/// Residuals (y - mean) / sigma, shifted so that they have zero mean. A censored value has
-/// the expected residual of a true value above the censored value.
+/// Residuals (y - mean) / sigma, shifted so that they have zero mean. For a censored value: the
+/// expected residual of the true value, given that the true value is above the censored value.
 Eigen::VectorXd residuals(CensoredValues values, const Fit& fit) {
   Eigen::VectorXd found(std::ssize(values));
   std::ranges::transform(values, found.begin(), [&fit](const CensoredValue& one) {

@@ -34,8 +34,9 @@ struct CensoredValue {
 /// for a normal distribution and one for a Gumbel distribution of smallest values. The Gumbel
 /// distribution is included because phi at the onset is skewed: the hazard of an onset rises with
 /// phi, and the hazard of the Gumbel distribution rises exponentially. With fewer than two observed
-/// values the estimate is infinite. If there are n values and 2^-n <= (1 - level) / 2 (sign test),
-/// the interval then begins at the smallest value, else at -infinity.
+/// values the estimate is infinite. In this case the interval begins at the smallest value if
+/// 2^-n <= (1 - level) / 2 (sign test), otherwise at -infinity. Here n is the number of all values,
+/// observed and censored.
 std::optional<Estimate> censored_mean(std::span<const CensoredValue> values,
                                       double level = confidence_level);
 
@@ -43,11 +44,11 @@ std::optional<Estimate> censored_mean(std::span<const CensoredValue> values,
 /// in sigma: G. Y. Zou and A. Donner, Stat. Med. 27, 1693 (2008). For independent groups Welch's
 /// degrees of freedom are used. If `paired`, a[k] and b[k] share a packing. The correlation of the
 /// two means is then the correlation of the residuals (G. Y. Zou, Psychol. Methods 12, 399 (2007)).
-/// Pairs with a censored value are included. A censored value has the expected residual of a true
-/// value above the censored value. Treating a[k] - b[k] as one censored value would give a bias,
-/// since b[k] decides whether the difference is censored. If no value is censored, the interval is
-/// Welch's interval or, for pairs, Student's interval. Empty if a group has fewer than two observed
-/// values.
+/// Pairs with a censored value are included. For a censored value, the residual is the expected
+/// residual of the true value, given that the true value is above the censored value. Treating
+/// a[k] - b[k] as one censored value would give a bias, since b[k] decides whether the difference
+/// is censored. If no value is censored, the interval is Welch's interval or, for pairs, Student's
+/// interval. Empty if a group has fewer than two observed values.
 std::optional<Estimate> censored_difference(std::span<const CensoredValue> a,
                                             std::span<const CensoredValue> b, bool paired,
                                             double level = confidence_level);

@@ -93,7 +93,7 @@ struct Series {
   bool large = false;        ///< larger points, which stay visible around smaller points
   std::string variant = {};  ///< name of the curve's variant in the table; "": no variant
   std::vector<ChartPoint> points = {};
-  /// Independent packings in the curve; 0 if not given, or if each run contributes to one point.
+  /// Independent packings in the curve. 0: not given, or each run contributes to only one point.
   std::size_t runs = 0;
   double shift = 0;  ///< added to x in the drawing, so that points with equal x stay visible
 };
@@ -132,7 +132,7 @@ struct TextTable {
   Text note = {};
 };
 
-/// One panel: its data, and either a chart or a text. A table with neither is not drawn.
+/// The data of one panel, with a chart, a text, or neither. With neither, the panel is not drawn.
 struct Table {
   std::string name = {};  ///< "S2a": letters, digits, '-' and '_'
   std::vector<TableColumn> columns = {};
@@ -175,7 +175,8 @@ std::string digits(double value, int significant = 9);
 /// The text without styles. A subscript follows "_", a superscript follows "^".
 std::string plain_text(const Text& text);
 
-/// Whether the chart can draw the point or line. A logarithmic axis shows only positive values.
+/// Whether the chart can draw the point or the reference line. A logarithmic axis shows only
+/// positive values.
 bool is_on_log_axes(const Chart& chart, const ChartPoint& point);
 bool is_on_log_axes(const Chart& chart, const ReferenceLine& line);
 

@@ -125,10 +125,10 @@ Verdict decided_by(const ClaimSpec& claim, const Claim& stated, RunGroup a, RunG
 /// A look (interim analysis) at n seeds uses the runs of the first n seeds that both sides have. It
 /// is made when all these runs have ended. If no looks are planned, there is one look, at all seeds
 /// that at least one side has. Returns the verdict of the first look that decides the claim. If no
-/// look decides it, the verdict is undecided, and its numbers use the seeds before the first seed
-/// that still has a planned run. If no seed is before that seed, the numbers use all seeds. Seeds
-/// that no look includes are used only in the note. `planned`: the two sides with the planned runs
-/// (Frame::pending).
+/// look decides the claim, the verdict is undecided. The numbers of an undecided verdict use the
+/// leading seeds whose runs have all ended, or all seeds if the first seed still has a planned run.
+/// Seeds that are in no look are used only in Verdict::note. `planned`: the two sides with the
+/// planned runs (Frame::pending).
 Verdict at_looks(const ClaimSpec& claim, Claim stated, const ClaimSides& sides,
                  const ClaimSides& planned, const Frame& frame) {
   const auto seeds_of = [](std::initializer_list<RunGroup> groups) {
@@ -275,7 +275,7 @@ std::set<nlohmann::json> others_of(const ClaimSpec& claim, const ClaimSides& sid
   for (const FrameRun* run : sides.runs.at(k)) {
     nlohmann::json swept = run->place.swept;
     for (const auto& [key, value] : claim.between.at(k).items()) {
-      if (swept.is_object()) swept.erase(key);  // in a damaged store it may not be an object
+      if (swept.is_object()) swept.erase(key);  // false only in a damaged store
     }
     others.insert(std::move(swept));
   }

@@ -20,11 +20,12 @@ Grains grains_of(const CrystalliteMap& map, const std::set<std::int32_t>& labels
   return grains;
 }
 
-/// Numbers of grains in a crystallite, by their origin. followed() defines the terms.
+/// Numbers of grains in a crystallite, by the origin of the grains. The comment on followed()
+/// defines "remembered", "descendant" and "foreign crystallite".
 struct Origin {
   std::size_t own = 0;                           ///< remembered grains
   std::size_t last = 0;                          ///< grains of the most recent descendants
-  std::map<std::int32_t, std::size_t> of_other;  ///< grains of each foreign crystallite, by label
+  std::map<std::int32_t, std::size_t> of_other;  ///< foreign crystallite's label -> grains from it
 
   bool continues_another() const {
     return std::ranges::any_of(of_other, [&](const auto& other) { return other.second > own; });
@@ -54,7 +55,8 @@ Followed followed(std::span<const CrystalliteMap* const> maps, std::int32_t labe
     const CrystalliteMap &before = *maps[cycle - 1], &now = *maps[cycle];
     Grains own;
     for (const Grains& grains : recent) own.insert(grains.begin(), grains.end());
-    std::map<std::int32_t, std::int32_t> other;  // grain -> label of its foreign crystallite
+    // Grains of foreign crystallites (see followed()): grain -> label of its crystallite.
+    std::map<std::int32_t, std::int32_t> other;
     for (std::size_t k = 0; k < before.grain.size(); ++k) {
       const bool is_other =
           !descendants.contains(before.label[k]) && !own.contains(before.grain[k]);

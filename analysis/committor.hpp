@@ -11,7 +11,8 @@
 
 namespace shearcell {
 
-/// Minimum size of a descendant [grains]. All crystallites of a control state are smaller. [choice]
+/// A descendant has at least this many grains. A control state is a state that has only smaller
+/// crystallites. [choice]
 inline constexpr std::int32_t least_descendant = 3;
 /// The followed crystallite has grown if a descendant has at least this many grains. [choice]
 inline constexpr std::int32_t grown_size = 60;

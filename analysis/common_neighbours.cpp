@@ -114,10 +114,10 @@ std::array<int, 2> count_signatures(std::span<const Neighbour> near, double cut,
 }
 
 // The lattice of a grain with these neighbours. FCC and HCP are recognized by the 12 nearest
-// neighbours, BCC by 14. Two neighbours are bonded if their distance is at most kCut times a
-// length. For FCC and HCP this length is the mean distance of the 12 neighbours from the grain. For
-// BCC it is the side of the cubic cell, estimated from the distances of all 14 neighbours (8 first
-// and 6 second neighbours) from the grain.
+// neighbours, BCC by 14. Two neighbours are bonded if they are at most kCut * L apart. For FCC and
+// HCP, L is the mean distance of the 12 neighbours from the grain. For BCC, L is the side of the
+// cubic cell, estimated from the distances of all 14 neighbours (8 first and 6 second neighbours)
+// from the grain.
 Lattice lattice_of(std::span<const Neighbour> near) {
   if (near.size() < 12) return Lattice::none;
   double mean = 0, side = 0;

@@ -30,10 +30,11 @@ struct Estimator {
   std::string_view key = {};  ///< a key that a claim must have to use this estimator; "": none
   /// Claims may compare measures of runs (true), of checkpoints (false), or of either (empty).
   std::optional<bool> of_run = false;
-  bool over_variants = false;      ///< a group of runs may contain several variants
-  bool one_side = false;           ///< its claims have one group, even without a published number
+  bool over_variants = false;  ///< a group of runs may contain several variants
+  /// Its claims always have one group. Other claims have one only if they have a published number.
+  bool one_side = false;
   bool compares_variants = false;  ///< the group must contain several variants
-  /// The reference number of claims that have one group and no published number.
+  /// The number with which a claim is compared if it has one group and no published number.
   std::string_view reference = "0";
   /// Returns a Scalar, which computes one number per run. The estimate is the mean of these numbers
   /// or, for two groups, the difference of their means. If this pointer is null, `decide` gives the
@@ -41,7 +42,8 @@ struct Estimator {
   Scalar (*scalar)(const ClaimSpec& claim) = nullptr;
   /// Decides the claim if `scalar` is null. Group `b` is empty if the claim has only one group.
   Verdict (*decide)(const ClaimSpec& claim, const Claim& stated, RunGroup a, RunGroup b) = nullptr;
-  /// Returns the estimated quantity in words, for sentences. If this is null, Scalar::name is used.
+  /// Returns the estimated quantity in words, for sentences. If this pointer is null, Scalar::name
+  /// is used.
   std::string (*words)(const ClaimSpec& claim) = nullptr;
 };
 

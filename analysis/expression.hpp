@@ -26,10 +26,11 @@ std::string wrong_in_expression(const std::string& text);
 
 using ValueOf = std::function<double(const std::string& name)>;
 
-/// Makes an evaluator for a name or an expression that wrong_in_expression() accepts. The evaluator
-/// returns NaN if the computed value, or the value of a name in the expression, is not finite. The
-/// locale has no effect. Only one thread at a time may call an evaluator.
+/// Computes the value of a name or an expression. Returns NaN if the computed value, or the value
+/// of a name in the expression, is not finite. The locale has no effect. Only one thread at a time
+/// may call an evaluator.
 using Evaluate = std::function<double(const ValueOf& value_of)>;
+/// Makes the evaluator of a text for which wrong_in_expression() returns "".
 Evaluate evaluator_of(const std::string& text);
 
 }  // namespace shearcell

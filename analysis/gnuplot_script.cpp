@@ -31,9 +31,9 @@ constexpr std::string_view style =
     // The legend is above the frame, since inside the frame it could hide data.
     "set key above horizontal center noautotitle Left reverse samplen 1.2 spacing 0.9\n";
 
-/// A single-quoted gnuplot string, in which each quote of `text` is doubled. gnuplot misreads this
-/// string if `text` begins with a quote or contains `''`. markup() avoids both: it puts a `\`
-/// before each quote.
+/// A single-quoted gnuplot string, in which each quote of `text` is doubled. `text` must come from
+/// markup(), which puts a `\` before each quote. Without the `\`, gnuplot misreads the string if
+/// `text` begins with a quote or contains `''`.
 std::string literal(const std::string& text) {
   std::string inside;
   for (const char c : text) {
@@ -83,8 +83,9 @@ struct Extent {
   }
 };
 
-/// Ticks of a logarithmic axis whose data include at most one power of ten: 1, 2 and 5 times powers
-/// of ten. If the highest value is less than four times the lowest, the ticks have equal steps.
+/// Ticks of a logarithmic axis whose data include at most one power of ten. If the highest value is
+/// less than four times the lowest, the ticks have equal steps. Otherwise they are 1, 2 and 5 times
+/// powers of ten.
 std::vector<std::string> ticks_of_decades(const Extent& data) {
   std::vector<std::string> ticks;
   const bool narrow = data.high < 4 * data.low;

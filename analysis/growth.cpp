@@ -15,8 +15,8 @@ using BySize = Eigen::Array<double, GrowthCurve::largest, 1>;
 using FromSize = Eigen::Matrix<double, GrowthCurve::largest, GrowthCurve::largest>;
 
 /// Columns of GrowthCurve::Sums: moments 0 to 2 of the number of crystallites, moments 0 and 1 of
-/// the excess (growing minus shrinking crystallites), and the sum of the excess over the size of
-/// the row and all larger sizes.
+/// the excess (growing minus shrinking crystallites), and the excess summed from the size of the
+/// row to the largest size.
 enum Column : Eigen::Index { all_0, all_1, all_2, excess_0, excess_1, tail };
 
 double log_size(Eigen::Index k) {
@@ -51,8 +51,8 @@ auto smooth(const Sums& sums) {
 }
 
 /// The size that GrowthCurve::critical_size() defines; infinity if there is none. Minus infinity if
-/// three conditions hold: delta_rho > 0 at size 1; the excess summed over all sizes is positive; no
-/// rise of delta_rho through zero has a larger sum of the excess above it.
+/// delta_rho > 0 at size 1 and the excess summed over all sizes is positive, unless delta_rho rises
+/// through zero at a size above which the summed excess is larger than the sum over all sizes.
 template <class Sums>
 double rise(const Sums& sums) {
   const auto delta = smooth(sums);
@@ -70,8 +70,8 @@ double rise(const Sums& sums) {
   return found;
 }
 
-/// The largest size at which the summed excess has its maximum. Minus infinity if the summed excess
-/// at size 1 equals the maximum; infinity if the maximum is not positive.
+/// The largest size at which the summed excess (column `tail`) has its maximum. Infinity if the
+/// maximum is not positive; otherwise minus infinity if the maximum is reached at size 1.
 template <class Sums>
 double best_division(const Sums& sums) {
   const auto excess = sums.col(tail);
@@ -114,15 +114,17 @@ void follow(const CrystalliteMap& now, const CrystalliteMap& later, GrowthBySize
     if (l == later.grain.size()) break;
     if (later.grain[l] == now.grain[k]) ++shared[{now.label[k], later.label[l]}];
   }
-  struct Outcome {  // where the grains of one crystallite of `now` are in `later`
-    std::int32_t larger = 0, same = 0, smaller = 0;  // grains, by size of the later crystallite
-    std::int32_t most = 0;                           // number of these grains in `end`
-    std::size_t end = 0;  // the later crystallite with the largest number of these grains
+  // Where the grains of a crystallite C of `now` are in `later`.
+  struct Outcome {
+    // Grains of C in crystallites of `later` that are larger than C, as large, or smaller.
+    std::int32_t larger = 0, same = 0, smaller = 0;
+    std::int32_t most = 0;  // number of grains of C in `end`
+    std::size_t end = 0;    // the crystallite of `later` that has the most grains of C
   };
   std::vector<Outcome> fates(now.size.size());
   // The crystallite of `now` that contributed the most grains to one crystallite of `later`.
   struct Origin {
-    std::int32_t most = 0, size = 0;  // number of these grains; size of the crystallite
+    std::int32_t most = 0, size = 0;  // number of contributed grains; size of the contributor
   };
   std::vector<Origin> origins(later.size.size());
   for (const auto& [labels, grains] : shared) {
@@ -145,7 +147,7 @@ void follow(const CrystalliteMap& now, const CrystalliteMap& later, GrowthBySize
     if (2 * larger > size) {
       ++(origins[end].size > size ? count.absorbed : count.grew);
     } else if (2 * (size - larger - same) > size) {
-      // More than half of the grains are now in smaller crystallites or in no crystallite.
+      // The condition counts the grains that are in smaller crystallites or in no crystallite.
       ++(2 * smaller > size ? count.shrank : count.vanished);
     }
   }

@@ -19,15 +19,16 @@ namespace shearcell {
 /// member. It is not counted, for example, if more than half of its grains are later in a
 /// crystallite of the same size.
 struct GrowthCount {
-  /// Crystallites with more than half of their grains later in larger crystallites.
+  /// Crystallites of which more than half of the grains are later in larger crystallites. The
+  /// crystallites in `absorbed` are not counted here.
   std::size_t grew = 0;
-  /// Crystallites that would count in `grew`, except that another, larger crystallite contributed
-  /// the most grains to the later crystallite.
+  /// Crystallites that meet the condition of `grew`, but became part of a crystallite to which
+  /// another, larger crystallite contributed the most grains.
   std::size_t absorbed = 0;
-  /// Crystallites with more than half of their grains later in smaller crystallites.
+  /// Crystallites of which more than half of the grains are later in smaller crystallites.
   std::size_t shrank = 0;
-  /// Crystallites with more than half of their grains later in smaller crystallites or in no
-  /// crystallite, unless they count in `shrank`.
+  /// Crystallites of which more than half of the grains are later in smaller crystallites or in
+  /// none. The crystallites in `shrank` are not counted here.
   std::size_t vanished = 0;
 
   std::size_t larger() const { return grew + absorbed; }     ///< "growing" in the supplement
@@ -78,20 +79,22 @@ class GrowthCurve {
   /// `background` is subtracted from delta_rho; crystallites grow where the difference is positive.
   explicit GrowthCurve(std::span<const GrowthBySize> runs, double background = 0);
 
-  /// `size` is 1 to `largest` grains. NaN if no crystallite was counted.
+  /// `size` is 1 to `largest` grains. NaN if no crystallite of any size was counted.
   double delta_rho(std::int32_t size) const;
   std::optional<double> delta_rho_error(std::int32_t size) const;  ///< bootstrap over runs
 
-  /// The size at which delta_rho rises through zero. If there are several such sizes, the excess
-  /// (growing minus shrinking crystallites) is summed over the sizes above each of them, and the
-  /// one with the largest sum is returned. Empty for fewer than least_bootstrap_runs runs, or if
-  /// there is no such size with a positive sum. The interval comes from the bootstrap. An end of
-  /// the interval is infinite if too many bootstrap selections have no such size.
+  /// The size at which delta_rho rises through zero. If delta_rho rises through zero at several
+  /// sizes, the excess (growing minus shrinking crystallites) above each such zero is summed, and
+  /// the zero with the largest sum is returned. Empty in three cases: there are fewer than
+  /// least_bootstrap_runs runs; no such zero has a positive sum; or delta_rho > 0 at size 1, and
+  /// the sum over all sizes is at least as large as the sum above each zero. The interval comes
+  /// from the bootstrap. An end of the interval is infinite if too many bootstrap selections have
+  /// no such zero.
   std::optional<Estimate> critical_size() const;
-  /// The size s with the largest excess (growing minus shrinking crystallites), summed over all
-  /// crystallites of at least s grains. At s the monotone (isotonic) fit of the unsmoothed
-  /// delta_rho crosses zero (M. Ayer et al., Ann. Math. Stat. 26, 641 (1955)). This size is a check
-  /// of critical_size(), but less precise.
+  /// The size s for which the number of growing minus the number of shrinking crystallites, among
+  /// all crystallites of at least s grains, is largest. At s the monotone (isotonic) fit of the
+  /// unsmoothed delta_rho crosses zero (M. Ayer et al., Ann. Math. Stat. 26, 641 (1955)). This size
+  /// serves as a check of critical_size(), which is more precise.
   std::optional<Estimate> monotone_critical_size() const;
   /// 90 % interval of the critical size in repeated studies with `runs` runs.
   Interval repeated_critical_size(std::size_t runs) const;

@@ -17,9 +17,10 @@ std::string words_of_ratio(const ClaimSpec& claim) {
                      claim.against);
 }
 
-/// F is the ratio of the variances of the two numbers, r is their correlation, and t is Student's
-/// quantile for f degrees of freedom. F and r are computed from the deviation of each run from the
-/// mean of its variant. The interval of the true variance ratio is
+/// Each run has two numbers, `compare` and `against`. F is the ratio of the variances of these
+/// numbers, r is the correlation between them, and t is Student's quantile for f degrees of
+/// freedom. F and r are computed from the deviation of each run from the mean of its variant. The
+/// interval of the true variance ratio is
 ///
 ///     F (K -+ sqrt(K^2 - 1)),   K = 1 + 2 (1 - r^2) t^2 / f,   f = runs - variants - 1
 Verdict decide_ratio(const ClaimSpec& claim, const Claim& stated, RunGroup runs, RunGroup) {

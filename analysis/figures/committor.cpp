@@ -22,13 +22,13 @@ namespace {
 /// Numbers of cycles without a descendant after which a crystallite counts as gone. Verdicts use
 /// cycles_gone. The other two numbers show how much the results depend on this choice.
 constexpr std::array<std::size_t, 3> cycles_without = {1, cycles_gone, 3};
-constexpr std::size_t chosen_rule = 1;  ///< index of cycles_gone
-/// Limit of the fraction of controls (see Subject) that grow. Above it, a critical size is defined
-/// only if the smallest crystallites grow more often than the controls. [choice]
+constexpr std::size_t chosen_rule = 1;  ///< index of cycles_gone in cycles_without
+/// If more than this fraction of the controls (see Subject) grow, a critical size is defined only
+/// if the smallest crystallites grow more often than the controls. [choice]
 constexpr double rare = 0.1;
 
-/// Number of clones with each outcome of a crystallite, in the order of Fate. The last number
-/// counts the clones with fate `gone` in which a descendant grew later ("revived").
+/// The number of clones with each fate, in the order of Fate. A fifth number counts the clones with
+/// fate `gone` in which a descendant grew later ("revived").
 struct Fates {
   Eigen::Array<std::size_t, 5, 1> clones = Eigen::Array<std::size_t, 5, 1>::Zero();
 
@@ -134,7 +134,8 @@ std::optional<double> grown_share(const Fates& fates) {
   return static_cast<double>(fates.of(Fate::grown)) / static_cast<double>(decided);
 }
 
-/// Fraction of the clones of control states in which a crystallite grew; empty without such states.
+/// Of all clones of control states: the fraction in which a crystallite grew. Empty if there are no
+/// control states.
 std::optional<double> background(const Amplitude& one) {
   return grown_share(sum_of(one.controls, chosen_rule));
 }

@@ -138,7 +138,7 @@ Verdict share_verdict(const Claim& claim, std::string quantity, RunGroup runs, C
                 packings.size(), std::move(note), std::move(entered));
 }
 
-/// Compares the inner half of the accessible width with the outer half.
+/// Compares the shares of nuclei in the inner half and the outer half of the accessible width.
 Verdict uniform_in_the_middle(RunGroup runs) {
   const double half = 0.5 - (inaccessible + 1) / (smallest_width(runs) + 2);
   return share_verdict(
