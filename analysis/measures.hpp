@@ -66,7 +66,8 @@ struct Measure {
   std::string_view unit;  ///< "1" if it has no unit
   std::string meaning;
   MeasureKind kind = MeasureKind::number;
-  /// Name for use in sentences; if empty, `name` is used. Required for kinds `run` and `grains`.
+  /// Name for use in sentences. The kinds `run` and `grains` require it. For the other kinds it may
+  /// be empty; sentences then use `name`.
   std::string_view words = {};
   std::string_view x = {}, x_unit = {};  ///< x axis of a curve
   GrainScale scale = {};                 ///< used if `kind` is `grains`

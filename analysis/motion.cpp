@@ -58,7 +58,8 @@ struct Neighbours {
     ++count;
   }
 
-  // The best deformation F = product square^-1 gives sum |r' - F r|^2 = later - tr(F product^T).
+  // The best deformation is F = P S^-1, where P is `product` and S is `square`. It gives
+  // sum |r' - F r|^2 = `later` - tr(F P^T).
   double nonaffine() const {
     // Neighbours in one plane do not determine the deformation.
     const double flat = 1e-9 * std::pow(square.trace() / 3, 3);

@@ -13,8 +13,8 @@
 namespace shearcell {
 
 /// Calls visit(i, j, r) for each pair i < j of `sites` (3 x n [d], z unwrapped) that is at most
-/// `reach` [d] apart. r is the vector from the nearest image of j to i. `reach` must not exceed
-/// half the depth of the cell, because only the nearest image is visited.
+/// `reach` [d] apart. r is the vector to i from the periodic image of j that is nearest to i. Only
+/// this image is visited, so `reach` must not exceed half the depth of the cell.
 template <class Visit>
 void for_each_pair(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd& sites,
                    double reach, const Visit& visit) {

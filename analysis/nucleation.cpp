@@ -48,7 +48,7 @@ using Shares = std::map<double, std::vector<Share>>;  ///< by amplitude
 
 /// 1 / variance of the normal priors on the coefficients of ln c. The standard deviation is 3 for
 /// the linear term and 0.5 for the quadratic term. Fits give coefficients of about 1 and 0.1. With
-/// these priors the likelihood has a maximum even for a few events. [choice]
+/// these priors the likelihood has a maximum even for a few events. [our choice]
 const Eigen::Vector3d prior(0, 1.0 / 9, 4);
 
 struct Likelihood {
@@ -82,7 +82,7 @@ void add_likelihood(const std::vector<Share>& shares, double exponent, Likelihoo
     return all;
   };
   Eigen::Matrix3d curvature;
-  Eigen::Vector3d slope, with_size;  // with_size: -d^2(ln L) / (dc d exponent)
+  Eigen::Vector3d slope, with_size;  // with_size[k]: -d^2(ln L) / (dc[k] d(exponent))
   double reached = logarithm();
   double moved = 1;
   for (int step = 0; step < 100 && moved > 1e-9; ++step) {
@@ -119,10 +119,10 @@ Likelihood likelihood(const Shares& amplitudes, double exponent) {
   return sum;
 }
 
-/// Whether the runs show how the rate depends on size. For at least one event there must be a run
-/// in a smaller cell at the same amplitude and nearly the same phi, and for at least one event such
-/// a run in a larger cell. Cells are compared by N, because the number of interior grains differs
-/// slightly between seeds of one N.
+/// Whether the runs show how the rate depends on size. At least one event must have a comparison
+/// run in a smaller cell, and at least one event must have a comparison run in a larger cell. A
+/// comparison run has the same amplitude and nearly the same phi. The size of a cell is its N,
+/// because the number of interior grains differs slightly between seeds of one N.
 bool is_bounded(const Shares& amplitudes) {
   bool larger = false, smaller = false;
   for (const auto& [amplitude, shares] : amplitudes) {

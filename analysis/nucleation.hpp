@@ -16,20 +16,21 @@
 
 namespace shearcell {
 
-/// Axis of a position. Heights are divided by the current height of the cell (`y`) or by 1.675 L
+/// Axis of a position. A height is divided by the current height of the cell (`y`) or by 1.675 L
 /// (`y_nominal`), where L is the free width.
 enum class CellAxis { x, y, y_nominal };
 inline constexpr double nominal_height = 1.675;  ///< [L], supplement E
 
 /// Whether a nucleus counts in each cycle (`always`) or only in the cycle in which it is first seen
 /// (`first`). A crystallite of at least 15 grains is a new nucleus if fewer than half of its grains
-/// were in such a crystallite before. A new nucleus of more than 25 grains is left out. [choice]
+/// were in such a crystallite before. A new nucleus of more than 25 grains is left out.
+/// [our choice]
 enum class Seen { always, first };
 
 /// Positions along `axis` of the centres of mass of all crystallites of 15 to 25 grains in a run. x
 /// starts 1 d outside the left plane and is divided by width + 2 d. y and y_nominal start at the
-/// bottom plane and are divided by the heights of CellAxis. x and y are in [0, 1]; y_nominal can
-/// exceed 1. [choice]
+/// bottom plane; CellAxis states the height by which each is divided. x and y are in [0, 1];
+/// y_nominal can exceed 1. The supplement leaves these definitions open.
 std::vector<double> nucleus_places(const FrameRun& run, CellAxis axis, Seen seen = Seen::always);
 
 struct DensityBin {
@@ -85,13 +86,14 @@ inline constexpr double rate_step = 0.0005;
 /// number of grains in the region. Onsets are a Poisson process, and ln c is a parabola in phi for
 /// each amplitude. Since a run has at most one event, the interval comes from the profile
 /// likelihood (D. R. Cox and D. Oakes, Analysis of Survival Data, 1984). It contains all exponents
-/// for which the log-likelihood is within a limit of its maximum. If runs share a packing, the
-/// variance of the score between packings may exceed the variance for independent runs. The limit
-/// is then multiplied by the ratio of the two variances (L. Pace, A. Salvan, N. Sartori, Stat.
-/// Sinica 21, 129 (2011)). Empty for fewer than least_runs packings. Also empty if the sizes of
-/// the cells differ too little. For at least one event there must be a run in a cell of fewer
-/// grains at the same amplitude and nearly the same phi, and for at least one event such a run in a
-/// cell of more grains.
+/// whose log-likelihood is at most a certain amount below the maximum. If runs share a packing,
+/// the variance of the packings' scores may exceed the variance expected for independent runs. The
+/// amount is then multiplied by the ratio of these two variances (L. Pace, A. Salvan, N. Sartori,
+/// Stat. Sinica 21, 129 (2011)).
+///
+/// Empty for fewer than least_runs packings. Also empty unless at least one event has a comparison
+/// run in a cell of fewer grains, and at least one event has a comparison run in a cell of more
+/// grains. A comparison run has the same amplitude and nearly the same phi.
 std::optional<Estimate> size_exponent(RunGroup runs, Region region,
                                       double level = confidence_level);
 

@@ -32,10 +32,11 @@ RunOnset onset_by_size(const FrameRun& run);
 
 /// Method 2: the phi at which ln(largest crystallite) rises most steeply with phi. The slope at phi
 /// is the slope of the least-squares line through the checkpoints within `slope_window / 2` of phi.
-/// A phi is left out if fewer than four checkpoints lie within this distance, or if these
-/// checkpoints and phi span less than half of `slope_window`. A run is `unclear` if no slope is
-/// positive at the other values of phi. Without crystallites, the size of the largest is taken
-/// as 1. A run whose largest crystallite never reaches the critical size is `never`. [choice]
+/// A value of phi is used only if at least four checkpoints lie within this distance, and if phi
+/// and these checkpoints together span at least half of `slope_window`. A run is `unclear` if no
+/// value of phi that is used has a positive slope. At a checkpoint without crystallites, the size
+/// of the largest crystallite is taken as 1. A run whose largest crystallite never reaches the
+/// critical size is `never`. [our choice]
 inline constexpr double slope_window = 0.008;
 RunOnset onset_by_slope(const FrameRun& run);
 

@@ -17,7 +17,7 @@ inline constexpr double rough_wall_surface = 0.375;
 /// Interior grains are at least this far from the wall surfaces [d]. Supplement C.
 inline constexpr double interior_distance = 1.5;
 /// Core grains are at least this far from the wall surfaces [d]. Closer to rough walls, phi is
-/// lower, and hardly any crystallite nucleates (experiments/results/README.md). [choice]
+/// lower, and hardly any crystallite nucleates (experiments/results/README.md). [our choice]
 inline constexpr double core_distance = 4;
 /// Distance from each wall plane to the wall surface, towards the interior of the cell [d].
 inline double wall_surface(const Cell& cell) {
@@ -28,11 +28,11 @@ inline double interior_margin(const Cell& cell) {
   return interior_distance + wall_surface(cell);
 }
 
-/// Overlaps delta = 1 - r_ij of grains with grains and wall grains. Contacts with wall planes do
-/// not count.
+/// Overlaps delta = 1 - r_ij of a grain with another grain or with a wall grain. Contacts with wall
+/// planes do not count.
 struct Overlaps {
   std::vector<double> largest;         ///< delta_max,i [d], 0 for a grain without contact
-  std::vector<std::int32_t> contacts;  ///< contacts of each grain with grains and wall grains
+  std::vector<std::int32_t> contacts;  ///< contacts of each grain, including those with wall grains
   double mean = 0;  ///< mean overlap of touching pairs of grains (Eq. S3) [d]; 0 without pairs
 };
 

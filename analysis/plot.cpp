@@ -72,7 +72,7 @@ std::filesystem::path draw_svg(const Table& table, const std::filesystem::path& 
       run_program({"gnuplot", "-d", script}, apart.path(), {fixed_date});
   const std::string fault = outcome ? fault_of("gnuplot", *outcome, svg, "<?xml", "</svg>")
                                     : "gnuplot is not installed (Debian package gnuplot-nox)";
-  if (!fault.empty()) {  // drawings of an earlier call show other data
+  if (!fault.empty()) {  // delete the drawings of an earlier call, which show other data
     for (const auto& old : {svg, pdf}) std::filesystem::remove(old);
     throw AnalysisError(fault);
   }

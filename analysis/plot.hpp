@@ -34,10 +34,10 @@ void require_own_files(const Table& table, const std::filesystem::path& folder);
 /// the script is kept, and older drawings with this name are deleted, because they show other data.
 std::filesystem::path draw_svg(const Table& table, const std::filesystem::path& folder);
 
-/// Writes the drawing as PDF beside the SVG and returns its path. The same SVG gives the same bytes
-/// with the same librsvg (gnuplot's own PDF contains the time). Returns nothing if rsvg-convert
-/// (Debian package librsvg2-bin) is not installed. Throws AnalysisError if rsvg-convert fails or
-/// writes an incomplete file.
+/// Converts the SVG to a PDF in the same folder and returns the path of the PDF. The same SVG gives
+/// the same bytes with the same librsvg. gnuplot is not used for this, because its PDFs contain the
+/// time of writing. Returns nothing if rsvg-convert (Debian package librsvg2-bin) is not installed.
+/// Throws AnalysisError if rsvg-convert fails or writes an incomplete file.
 std::optional<std::filesystem::path> convert_to_pdf(const std::filesystem::path& svg);
 
 }  // namespace shearcell

@@ -109,8 +109,9 @@ std::string averaged_by(const PlotSpec& plot, RunGroup runs) {
 
 namespace {
 
-/// The runs that the plot draws. Sets a note on PlotSpec::minus for the caption. Throws UsageError
-/// if a curve would average over a swept key, or if several variants would be subtracted.
+/// The runs that the plot draws. If the caption must explain PlotSpec::minus, sets `note` to this
+/// explanation. Throws UsageError if a curve would average over a swept key, or if several variants
+/// would be subtracted.
 std::vector<Selected> select(const PlotSpec& plot, const Frame& frame, std::string& note) {
   PlotRuns selection = selected_by(plot, frame.runs);
   const auto& [drawn, subtracted, alone] = selection;
@@ -298,9 +299,9 @@ void set_titles(const PlotSpec& plot, const NameVariants& name, std::span<Curve>
 }
 
 /// Sets Curve::style to the first entry of PlotSpec::series that matches the curve. A curve gets no
-/// style if no entry matches it, or if its entry is also the first match of another curve. With
-/// PlotSpec::listed, styles are used only if PlotSpec::series contains every parameter in which the
-/// curves differ.
+/// style if no entry matches it, or if the first entry that matches it is also the first entry that
+/// matches another curve. With PlotSpec::listed, styles are used only if PlotSpec::series contains
+/// every parameter in which the curves differ.
 void set_styles(const PlotSpec& plot, std::span<Curve> curves) {
   std::vector<json> keys;
   for (const Curve& curve : curves) keys.push_back(curve.key);
@@ -334,7 +335,7 @@ void set_look(const SeriesSpec& stated, std::string& colour, int& point) {
 }
 
 /// The colours and symbols that the manifest states: first those of this plot, then those of the
-/// manifest's other plots. A colour is left out if an earlier plot of this sequence states it.
+/// manifest's other plots. A colour is left out if a plot earlier in this order states it.
 std::vector<StatedLook> stated_looks(const PlotSpec& plot, const Plots& others) {
   std::vector<StatedLook> looks;
   std::set<std::string> taken;  // colours that earlier plots state
@@ -360,7 +361,7 @@ void apply(const SeriesSpec& stated, const PlotSpec& plot, bool named, Curve& cu
   set_look(stated, curve.look.colour, curve.look.point);
 }
 
-/// Sets Panel::curves, sorted by their style's index in PlotSpec::series, then by their values.
+/// Sets Panel::curves, sorted by Curve::style, then by the values in Curve::key.
 void set_curves(const Looks& looks, const NameVariants& names, Panel& panel) {
   const PlotSpec& plot = panel.plot;
   std::vector<NumberColumn> columns;

@@ -32,7 +32,7 @@ inline constexpr auto kNames<LogAxes> = names_in_order<LogAxes>("none", "x", "y"
 /// Label, colour and symbol (`marker`) of the curve whose variants have the parameter values in
 /// `where`. If one of these is empty, it is chosen from the swept values (styles.hpp).
 struct SeriesSpec {
-  nlohmann::json where;     ///< parameter -> value, for all variants of the curve
+  nlohmann::json where;     ///< parameter -> value
   std::string column = {};  ///< instead of `where`: the name of a column, if `y` has several
   std::string label = {};   ///< may contain formulas, see formula()
   std::string colour = {};  ///< "#rrggbb", or one of colour_names
@@ -42,7 +42,7 @@ struct SeriesSpec {
 /// A further column of a plot's CSV.
 struct ColumnSpec {
   std::string measure;
-  std::string name = {};  ///< name of the column, without unit; "": the measure's name
+  std::string name = {};  ///< name of the column, without unit; if empty, the measure's name
 };
 
 /// A black point on each curve. Its coordinates are two measures of the whole run, averaged over
@@ -66,12 +66,12 @@ struct PlotSpec {
   /// "cycle", a parameter, a measure (of a checkpoint or of the run), or an expression of these. A
   /// measure of the run is averaged over the runs of each variant. Ignored if y is a curve.
   std::string x = "cycle";
-  std::string by = {};      ///< one curve for each value of this parameter; "": for each variant
-  std::string figure = {};  ///< the figure to which the plot belongs; "": `name`
+  std::string by = {};      ///< one curve per value of this parameter; if empty, one per variant
+  std::string figure = {};  ///< the figure to which the plot belongs; if empty, the figure `name`
   std::string panel = {};   ///< one panel for each value of this parameter
   Show show = Show::mean;
   LogAxes log = LogAxes::none;
-  std::string xlabel = {}, ylabel = {};  ///< may contain formulas; "": made from x and y
+  std::string xlabel = {}, ylabel = {};  ///< may contain formulas; if empty, made from x and y
   std::vector<SeriesSpec> series = {};
   std::vector<PublishedSpec> published = {};
   /// Further columns of the CSV. The first `drawn` columns also get a curve. If x and y have one

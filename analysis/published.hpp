@@ -10,7 +10,7 @@
 
 namespace shearcell {
 
-/// Section C. n_bin of A = 0.04 is not published; n_bin of A = 0.05 is used instead. [choice]
+/// Section C. n_bin of A = 0.04 is not published; n_bin of A = 0.05 is used instead. [our choice]
 struct PublishedAmplitude {
   double amplitude_rad;
   double critical_size;                ///< grains
@@ -36,8 +36,8 @@ inline constexpr const char* growth_cannot_be_decided =
     "the critical size grows with A; with 20 cycles it falls; with 5 cycles the ratio of the "
     "critical sizes is near 1, the threshold of the claim";
 
-/// Returns the published amplitude that is nearest to `amplitude_rad`. The numbers published for it
-/// are also used for `amplitude_rad`. [choice]
+/// Returns the published amplitude that is nearest to `amplitude_rad`. The numbers published for
+/// this amplitude are also used for `amplitude_rad`; the supplement leaves this open.
 inline const PublishedAmplitude& published_nearest(double amplitude_rad) {
   return *std::ranges::min_element(published_amplitudes, {}, [&](const PublishedAmplitude& one) {
     return std::abs(one.amplitude_rad - amplitude_rad);

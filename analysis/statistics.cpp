@@ -28,7 +28,7 @@ Interval around(double value, double error, double freedom, double level) {
   return {value - half, value + half};
 }
 
-/// Draws selections with `chosen` runs each. Returns the statistic of each; NaN is left out.
+/// Draws samples of `chosen` runs each. Returns the statistic of each; NaN is left out.
 std::vector<double> bootstrap_values(std::size_t runs, std::size_t chosen,
                                      const RunStatistic& statistic) {
   std::vector<std::size_t> selection(chosen);

@@ -28,14 +28,14 @@ RunStatistics rms_over_runs(std::span<const double> values);
 /// Slope of the least-squares line of y against x; NaN if all x are equal.
 double least_squares_slope(std::span<const std::pair<double, double>> points);
 
-/// Computes a number from a selection of runs, in which a run may occur several times; NaN if the
-/// selection has no such number. The bootstrap draws 1000 selections with replacement. The
-/// random numbers are counter-based, so the same input gives the same values.
+/// Computes a number from a sample of runs, in which a run may occur several times; NaN if the
+/// sample has no such number. The bootstrap draws 1000 samples with replacement. The random numbers
+/// are counter-based, so the same input gives the same values.
 using RunStatistic = std::function<double(std::span<const std::size_t>)>;
 
-/// Standard error of a statistic: its standard deviation over the selections of the bootstrap,
-/// multiplied by sqrt(runs / (runs - 1)). For a mean it agrees with over_runs(). Empty for fewer
-/// than two runs, or if fewer than half of the selections have a finite value.
+/// Standard error of a statistic: its standard deviation over the bootstrap samples, multiplied by
+/// sqrt(runs / (runs - 1)). For a mean it agrees with over_runs(). Empty for fewer than two runs,
+/// or if fewer than half of the samples have a finite value.
 std::optional<double> bootstrap_error(std::size_t runs, const RunStatistic& statistic);
 
 /// Confidence level of intervals unless a level is given. A 90 % interval that lies within a margin
@@ -43,7 +43,7 @@ std::optional<double> bootstrap_error(std::size_t runs, const RunStatistic& stat
 /// (1987).
 inline constexpr double confidence_level = 0.9;
 
-/// Minimum number of runs, or of pairs of runs, for an estimate. [choice]
+/// Minimum number of runs, or of pairs of runs, for an estimate. [our choice]
 inline constexpr std::size_t least_runs = 3;
 /// Minimum number of runs for the bootstrap. A bootstrap interval of a mean lies between the
 /// smallest and the largest value. These two values enclose the median of the distribution with a
@@ -75,7 +75,8 @@ Estimate mapped(Estimate estimate, const std::function<double(double)>& increasi
 double student_quantile(double probability, double freedom);
 double normal_quantile(double probability);
 
-/// Mean of one value per run or pair of runs, with Student's interval, mean +- t s / sqrt(n).
+/// Mean of `values`, with Student's interval mean +- t s / sqrt(n). Each run or pair of runs gives
+/// one value.
 std::optional<Estimate> mean_of(std::span<const double> values, double level = confidence_level);
 
 /// Difference mean(a) - mean(b) of two independent groups, whose variances may differ: B. L. Welch,
@@ -85,14 +86,14 @@ std::optional<Estimate> difference_of_means(std::span<const double> a, std::span
 
 /// Estimates any statistic by the bootstrap, with the expanded percentile interval: T. C.
 /// Hesterberg, The American Statistician 69, 371 (2015). For a mean, this interval is as long as
-/// Student's interval. The statistic may be infinite. A selection (see RunStatistic) whose
+/// Student's interval. The statistic may be infinite. A bootstrap sample whose
 /// statistic is NaN widens the interval at both ends. Empty for fewer than least_bootstrap_runs, or
 /// if the statistic of all runs together is not finite.
 std::optional<Estimate> bootstrapped(std::size_t runs, const RunStatistic& statistic,
                                      double level = confidence_level);
 
 /// Interval that contains the statistic in 90 % of studies with `chosen` runs. Its ends are the 5 %
-/// and 95 % quantiles over random selections of `chosen` runs, drawn with replacement from `runs`
+/// and 95 % quantiles over random samples of `chosen` runs, drawn with replacement from `runs`
 /// runs. Unbounded if `runs` is less than least_bootstrap_runs.
 Interval repetitions(std::size_t runs, std::size_t chosen, const RunStatistic& statistic);
 
@@ -104,8 +105,8 @@ struct SpreadBetween {
 };
 /// Analysis of variance of groups with one value per run. The groups may differ in size: S. R.
 /// Searle, G. Casella and C. E. McCulloch, Variance Components (1992), section 3.6. The upper limit
-/// of the standard deviation is from J. S. Williams, Biometrika 49, 278 (1962). For k groups and n
-/// values in all it is
+/// of the standard deviation is from J. S. Williams, Biometrika 49, 278 (1962). For k groups with n
+/// values in total, the limit is given by
 ///
 ///     limit^2 = (k - 1) (MSB - F MSW) / (n0 chi^2)
 ///
@@ -126,8 +127,8 @@ Estimate ratio(const Estimate& a, const Estimate& b);
 /// exclude both values at this distance. A normal distribution is assumed, with Student's t for
 /// type I and type II errors: Chow, Shao and Wang, Sample Size Calculations in Clinical Research
 /// (2008), section 3.2. Empty if the number is more than 10000. The spread of a few runs is
-/// uncertain: the true number is 0.3 to 20 times the number found from 3 runs, and 0.5 to 4 times
-/// the number found from 6 runs.
+/// uncertain. If the estimate comes from 3 runs, the number really needed is 0.3 to 20 times the
+/// result; if it comes from 6 runs, 0.5 to 4 times the result.
 std::optional<std::size_t> runs_to_resolve(const Estimate& estimate, double distance,
                                            bool both_sides);
 

@@ -37,7 +37,8 @@ inline constexpr std::size_t curve_symbols = 10;
 struct Look {
   std::string colour = {};  ///< "#rrggbb"
   int point = 0;            ///< like Series::point
-  Join join = Join::line;   ///< without symbols, curves of one colour alternate: line, dashes
+  /// How the curve is drawn without symbols. Line and dashes alternate among curves of one colour.
+  Join join = Join::line;
 };
 
 /// A colour or symbol that a manifest states for the curves with the parameters `where`.
@@ -47,8 +48,8 @@ struct StatedLook {
   int point = -1;           ///< -1: not stated
 };
 
-/// Colour and symbol of a curve of one amplitude. For the amplitudes of the supplement, they are
-/// the same in all figures. Other amplitudes get the k-th colour and the k-th symbol.
+/// Colour and symbol of a curve of one amplitude. An amplitude of the supplement has the same
+/// colour and symbol in all figures. Any other amplitude gets the k-th colour and the k-th symbol.
 Look amplitude_look(double amplitude_rad, std::size_t k);
 
 /// The runs of one amplitude. Runs without an amplitude are left out.
@@ -63,10 +64,10 @@ struct AmplitudeRuns {
 std::vector<AmplitudeRuns> by_amplitude(std::span<const FrameRun> runs);
 
 /// Chooses the colour and symbol (Look) of each variant from the keys that vary in the frame. The
-/// rank of the first key's value decides the colour. The rank of the other values decides the
-/// symbol. The amplitudes of the supplement have the colours of amplitude_look(). Colours and
-/// symbols of a StatedLook replace the chosen ones. A stated colour is not chosen for other
-/// variants.
+/// rank of the first key's value decides the colour. The values of the other keys together have one
+/// rank, which decides the symbol. The amplitudes of the supplement have the colours of
+/// amplitude_look(). Colours and symbols of a StatedLook replace the chosen ones. A stated colour
+/// is not chosen for other variants.
 class Looks {
  public:
   /// `shared`: keys that do not distinguish the curves of one panel. of() ignores them when it
@@ -76,9 +77,11 @@ class Looks {
 
   /// Colour and symbol of a curve. If all runs of the curve belong to one variant, the swept values
   /// of this variant decide. Otherwise `key` decides: the values that all runs of the curve share.
-  /// A StatedLook is used if the curve has the parameters StatedLook::where and the swept values
-  /// give one colour to all variants with these parameters. The curve then has the stated colour.
-  /// It also has the stated symbol, unless other curves of the panel have these parameters.
+  ///
+  /// A StatedLook is used under two conditions: the curve has the parameter values in
+  /// StatedLook::where, and all variants with these values have the same value of the key that
+  /// decides the colour. The curve then has the stated colour. It also has the stated symbol,
+  /// unless other curves of the panel have the values in StatedLook::where, too.
   Look of(RunGroup curve, const nlohmann::json& key) const;
 
  private:

@@ -27,8 +27,8 @@ inline constexpr auto kNames<Ruling> = names_in_order<Ruling>("agrees", "support
                                                               "cannot be decided");
 
 /// The range in which a claim expects the quantity: from -margin to margin (`same`), above margin
-/// (`higher`) or below margin (`lower`, with a margin of 0 or less). For two variants the quantity
-/// is first minus second.
+/// (`higher`) or below margin (`lower`, with a margin of 0 or less). If a claim compares two
+/// variants, the quantity is the value of the first variant minus the value of the second.
 enum class Relation : std::uint8_t { same, higher, lower };
 template <>
 inline constexpr auto kNames<Relation> = names_in_order<Relation>("same", "higher", "lower");
@@ -83,9 +83,9 @@ Ruling ruling_of(const Interval& interval, double margin, Relation claimed);
 /// The verdict that follows from the estimate's interval; undecided without an estimate. If the
 /// claim has a reason why it cannot be decided, the verdict is undecidable, with this reason.
 /// `runs_needed`: for an undecided claim, the total number of runs (more than Estimate::runs) that
-/// decides the claim with 90 % probability. The number is computed for the true value 0
-/// (Relation::same) or twice the margin (other relations). If the result is at most Estimate::runs,
-/// or if the interval excludes 0, the number is computed for the estimate as true value instead.
+/// decides the claim with 90 % probability. The true value is assumed to be 0 (Relation::same) or
+/// twice the margin (other relations). If this assumption gives at most Estimate::runs, or if the
+/// interval excludes 0, the true value is assumed to be the estimate instead.
 Verdict decide(const Claim& claim, std::string quantity, const std::optional<Estimate>& estimate,
                std::size_t runs, std::string note, Table entered = {},
                Counted counted = Counted::runs);

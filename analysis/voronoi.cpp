@@ -46,7 +46,7 @@ struct alignas(64) Tetrahedron {
   std::array<std::int32_t, 4> neighbour;  // tetrahedron opposite to each corner
   Eigen::Vector3d centre;   // circumcentre; set only if at least one corner is a grain
   std::uint8_t beyond;      // bit w is 1: the centre is on or beyond wall w
-  std::uint8_t edges_done;  // a bit for each edge whose face was measured
+  std::uint8_t edges_done;  // a bit for each edge: 1 if the face between its two sites is measured
 };
 
 constexpr std::array<std::array<std::uint8_t, 2>, 6> edges = {
@@ -74,9 +74,9 @@ std::size_t corner_of(const Tetrahedron& t, std::int32_t vertex) {
 /// inside a wall, so cells fit together without gaps. Polygon sides on a wall are the borders of
 /// the cells' faces on that wall.
 ///
-/// Eight additional points, the guards, at the corners of a large cube bound every cell. They are
-/// farther away in z than any image that a cell may need. So no cell that passes the test in
-/// measure() has a face with a guard.
+/// The guards are eight additional points at the corners of a large cube, so that every cell is
+/// bounded. They are farther away in z than any periodic image that a cell may need. So no cell
+/// that passes the test in measure() has a face with a guard.
 class Tessellation {
  public:
   Tessellation(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd& sites,
@@ -100,11 +100,13 @@ class Tessellation {
     widen(first_margin_spacings * spacing);
   }
 
-  /// Each corner of a cell is the centre of a sphere through the cell's site. The cell is correct
-  /// if all these spheres lie within the margin. More images can only make cells smaller, so a
-  /// margin as large as the present reach of the spheres is sufficient. While images are missing, a
-  /// cell can have a face with a guard. The reach is then much too large. Therefore each pass at
-  /// most doubles the margin.
+  /// The margin is the distance in z, beyond [0, depth], up to which periodic images were added.
+  /// Each corner of a cell is the centre of a sphere through the cell's site. The reach is the
+  /// largest distance in z by which these spheres extend beyond [0, depth]. All cells are correct
+  /// if the reach is at most the margin. More images can only make cells smaller, so a margin as
+  /// large as the present reach is sufficient. While images are missing, a cell can have a face
+  /// with a guard. The reach is then much too large. Therefore each pass at most doubles the
+  /// margin.
   VoronoiDiagram measure() {
     while (true) {
       reach_ = 0;
@@ -225,7 +227,7 @@ class Tessellation {
   }
 
   Eigen::Vector3d circumcentre(std::array<std::int32_t, 4> vertices) const {
-    // The vectors a, b and c start at a grain, so that only vectors to guards are long.
+    // The vectors a, b and c start at a grain. If they started at a guard, all three would be long.
     if (!is_grain(vertices[0])) {
       std::iter_swap(vertices.begin(), std::ranges::find_if(vertices, [&](std::int32_t vertex) {
                        return is_grain(vertex);
@@ -335,10 +337,10 @@ class Tessellation {
   }
 
   /// Clips the face between a and b at the walls in `beyond`. Returns twice the vector area of the
-  /// remaining polygon. A side of this polygon on a wall is also an edge of two wall faces: one of
-  /// the cell of a, one of the cell of b. The contribution of the edge is added to the areas of
-  /// both faces: the area of a wall face is the integral of -z du along its border, where u is the
-  /// coordinate along the wall, normal to z. At the edges of the box du is 0.
+  /// remaining polygon. A side of this polygon that lies on a wall also belongs to the borders of
+  /// two wall faces: that of a's cell and that of b's cell. The side contributes to the areas of
+  /// both wall faces: the area of a wall face is the integral of -z du along its border, where u is
+  /// the coordinate along the wall, normal to z. At the edges of the box du is 0.
   Eigen::Vector3d clip(std::size_t start, std::int32_t a, std::int32_t b, unsigned beyond) {
     polygon_.clear();
     walk_around(start, a, b, [&](const Tetrahedron& t, std::uint8_t) {
@@ -432,7 +434,7 @@ class Tessellation {
   std::vector<Eigen::Vector3d> point_;
   std::size_t inserted_ = 0;  // number of points in the triangulation
   std::vector<Tetrahedron> tetrahedra_;
-  double reach_ = 0;  // see note_reach(): how far the spheres extend in z beyond [0, depth] [d]
+  double reach_ = 0;                              // see measure() [d]
   std::vector<std::vector<Side>> sides_;          // by grain
   std::vector<std::array<double, 4>> wall_area_;  // by grain and wall
   std::vector<Corner> polygon_;                   // current face

@@ -26,7 +26,7 @@ struct VoronoiFace {
 /// Arrays have one entry per grain, by permanent id; `faces` has the faces of all grains.
 struct VoronoiDiagram {
   std::vector<double> volume;      ///< V_cell,i [d^3]
-  std::vector<double> surface;     ///< A_i, the area of all faces, also on wall planes [d^2]
+  std::vector<double> surface;     ///< A_i, area of all faces including those on walls [d^2]
   std::vector<std::size_t> first;  ///< n + 1 entries: grain i has faces first[i] to first[i+1] - 1
   std::vector<VoronoiFace> faces;
 
@@ -43,8 +43,9 @@ struct VoronoiDiagram {
 /// faces are polygons of circumcentres, clipped by the walls. The faces of a grain are in ascending
 /// order of kind, neighbour and image. Faces of at most 1e-13 d^2 are rounding errors and left out.
 ///
-/// Throws AnalysisError, with the numbers of the grains, if two sites coincide or a grain is on or
-/// outside a wall plane; also if a position is not finite or the cell has no volume.
+/// Throws AnalysisError if two sites coincide, or if a grain is on or outside a wall plane; the
+/// message then names these grains. Also throws AnalysisError if a position is not finite or the
+/// cell has no volume.
 VoronoiDiagram voronoi(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd& grains);
 
 /// Sites for neighbour searches: grains, then wall grains, with z wrapped into one period.
