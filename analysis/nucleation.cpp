@@ -48,7 +48,7 @@ using Shares = std::map<double, std::vector<Share>>;  ///< by amplitude
 
 /// 1 / variance of the normal priors on the coefficients of ln c. The standard deviation is 3 for
 /// the linear term and 0.5 for the quadratic term. Fits give coefficients of about 1 and 0.1. With
-/// these priors the likelihood has a maximum even for a few events. [our choice]
+/// these priors the likelihood has a maximum even for a few events. [choice]
 const Eigen::Vector3d prior(0, 1.0 / 9, 4);
 
 struct Likelihood {

@@ -24,7 +24,7 @@ inline constexpr double nominal_height = 1.675;  ///< [L], supplement E
 /// Whether a nucleus counts in each cycle (`always`) or only in the cycle in which it is first seen
 /// (`first`). A crystallite of at least 15 grains is a new nucleus if fewer than half of its grains
 /// were in such a crystallite before. A new nucleus of more than 25 grains is left out.
-/// [our choice]
+/// [choice]
 enum class Seen { always, first };
 
 /// Positions along `axis` of the centres of mass of all crystallites of 15 to 25 grains in a run. x

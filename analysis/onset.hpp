@@ -36,7 +36,7 @@ RunOnset onset_by_size(const FrameRun& run);
 /// and these checkpoints together span at least half of `slope_window`. A run is `unclear` if no
 /// value of phi that is used has a positive slope. At a checkpoint without crystallites, the size
 /// of the largest crystallite is taken as 1. A run whose largest crystallite never reaches the
-/// critical size is `never`. [our choice]
+/// critical size is `never`. [choice]
 inline constexpr double slope_window = 0.008;
 RunOnset onset_by_slope(const FrameRun& run);
 

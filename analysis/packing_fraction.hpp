@@ -17,7 +17,7 @@ inline constexpr double rough_wall_surface = 0.375;
 /// Interior grains are at least this far from the wall surfaces [d]. Supplement C.
 inline constexpr double interior_distance = 1.5;
 /// Core grains are at least this far from the wall surfaces [d]. Closer to rough walls, phi is
-/// lower, and hardly any crystallite nucleates (experiments/results/README.md). [our choice]
+/// lower, and hardly any crystallite nucleates (experiments/results/README.md). [choice]
 inline constexpr double core_distance = 4;
 /// Distance from each wall plane to the wall surface, towards the interior of the cell [d].
 inline double wall_surface(const Cell& cell) {

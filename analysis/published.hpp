@@ -10,7 +10,7 @@
 
 namespace shearcell {
 
-/// Section C. n_bin of A = 0.04 is not published; n_bin of A = 0.05 is used instead. [our choice]
+/// Section C. n_bin of A = 0.04 is not published; n_bin of A = 0.05 is used instead. [choice]
 struct PublishedAmplitude {
   double amplitude_rad;
   double critical_size;                ///< grains

@@ -43,7 +43,7 @@ std::optional<double> bootstrap_error(std::size_t runs, const RunStatistic& stat
 /// (1987).
 inline constexpr double confidence_level = 0.9;
 
-/// Minimum number of runs, or of pairs of runs, for an estimate. [our choice]
+/// Minimum number of runs, or of pairs of runs, for an estimate. [choice]
 inline constexpr std::size_t least_runs = 3;
 /// Minimum number of runs for the bootstrap. A bootstrap interval of a mean lies between the
 /// smallest and the largest value. These two values enclose the median of the distribution with a
