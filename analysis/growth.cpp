@@ -50,9 +50,9 @@ auto smooth(const Sums& sums) {
   return (scatter > 1e-9 * n * xx).select((xx * y - x * xy) / scatter, y / n).eval();
 }
 
-/// The size that GrowthCurve::critical_size() defines; infinity if there is none. Minus infinity if
-/// delta_rho > 0 at size 1 and the excess summed over all sizes is positive, unless delta_rho rises
-/// through zero at a size above which the summed excess is larger than the sum over all sizes.
+/// The size that GrowthCurve::critical_size() defines. Infinity if no zero of delta_rho has a
+/// positive sum. Minus infinity in the third case of critical_size(): crystallites of all sizes
+/// grow.
 template <class Sums>
 double rise(const Sums& sums) {
   const auto delta = smooth(sums);

@@ -337,10 +337,11 @@ class Tessellation {
   }
 
   /// Clips the face between a and b at the walls in `beyond`. Returns twice the vector area of the
-  /// remaining polygon. A side of this polygon that lies on a wall also belongs to the borders of
-  /// two wall faces: that of a's cell and that of b's cell. The side contributes to the areas of
-  /// both wall faces: the area of a wall face is the integral of -z du along its border, where u is
-  /// the coordinate along the wall, normal to z. At the edges of the box du is 0.
+  /// remaining polygon. A side of this polygon that lies on a wall is also part of the borders of
+  /// two wall faces, one of a's cell and one of b's cell. The side contributes to the areas of both
+  /// wall faces: the area of a wall face is the integral of -z du along its border, where u is the
+  /// coordinate along the wall, normal to z. Borders along an edge of the box contribute nothing,
+  /// because du is 0 there.
   Eigen::Vector3d clip(std::size_t start, std::int32_t a, std::int32_t b, unsigned beyond) {
     polygon_.clear();
     walk_around(start, a, b, [&](const Tetrahedron& t, std::uint8_t) {

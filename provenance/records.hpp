@@ -57,7 +57,8 @@ inline std::vector<Ask> asks_of(const std::vector<Membership>& memberships) {
   return asks;
 }
 
-/// The name of a scale in text and JSON: "base" (in events: "") if the manifest has no scales.
+/// The name of a scale in text and JSON. If the manifest has no scales, this is "base"; events
+/// record "" instead.
 inline std::string scale_name(const std::string& scale) {
   return scale.empty() ? "base" : scale;
 }

@@ -257,7 +257,7 @@ class Makers {
     if (found == known.end()) known.push_back(lines);
     return fmt::format("{} {}", what, place + 1);
   }
-  std::map<std::string, std::vector<Lines>> known_;  // "build" and "host": the lines to print
+  std::map<std::string, std::vector<Lines>> known_;  // the different builds ("build") and hosts
 };
 
 void print_manifests(const FigureLineage& lineage) {

@@ -42,7 +42,8 @@ struct ExportedState : Particles {
   double stiffness_N_per_m = std::nan("");  ///< of a contact; NaN if unknown
   MeasureOutcome unread;                    ///< earlier checkpoints that could not be read
 
-  /// What LAMMPS must compute to continue the run. Empty for a stiffening or an unreadable stage.
+  /// What LAMMPS must compute to continue the run. Empty if the run is a stiffening, or if its
+  /// stage cannot be read.
   std::optional<LammpsTask> continued;
 };
 

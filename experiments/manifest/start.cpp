@@ -55,8 +55,9 @@ void require_same_cell(const Manifest& manifest, const Scale& scale, const Varia
   }
 }
 
-/// Advice on how to make the cell `width` [d] wide and deep: the nominal packing fraction to write,
-/// or another file if that fraction is out of range. (A higher fraction makes the cell narrower.)
+/// Advice on how to make the cell `width` [d] wide and deep. It states the nominal packing fraction
+/// that the manifest needs. If this fraction is out of range, the advice is to use another file of
+/// grain positions. (A higher fraction makes the cell narrower.)
 std::string remedy_for_width(const Parameters& p, double width) {
   Geometry shape = geometry(p);
   const Range& range = find_field("nominal_packing_fraction")->range;

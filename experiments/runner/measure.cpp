@@ -212,7 +212,7 @@ class Measuring {
   std::vector<const Provider*> providers_;  // the requested providers, then MeasureOptions::also
   std::size_t wanted_ = 0;                  // number of requested providers (without `also`)
   std::vector<Task> tasks_;                 // the results of a task are written by one thread
-  std::vector<DerivedKey> keys_;            // one for each task and provider, by task
+  std::vector<DerivedKey> keys_;            // for each task, one for each provider
   std::vector<std::size_t> place_;          // for each checkpoint, its index in tasks_
   std::mutex mutex_;                        // guards the members below while threads run
   DerivedCache cache_;
