@@ -51,8 +51,8 @@ auto smooth(const Sums& sums) {
 }
 
 /// The size that GrowthCurve::critical_size() defines. Infinity if no zero of delta_rho has a
-/// positive sum. Minus infinity in the third case of critical_size(): crystallites of all sizes
-/// grow.
+/// positive sum. Minus infinity in the third case of critical_size(), in which growth outweighs
+/// shrinkage from size 1 on.
 template <class Sums>
 double rise(const Sums& sums) {
   const auto delta = smooth(sums);
