@@ -25,7 +25,7 @@ Grains grains_of(const CrystalliteMap& map, const std::set<std::int32_t>& labels
 struct Origin {
   std::size_t own = 0;                           ///< remembered grains
   std::size_t last = 0;                          ///< grains of the most recent descendants
-  std::map<std::int32_t, std::size_t> of_other;  ///< foreign crystallite's label -> grains from it
+  std::map<std::int32_t, std::size_t> of_other;  ///< label of another crystallite -> its grains
 
   bool continues_another() const {
     return std::ranges::any_of(of_other, [&](const auto& other) { return other.second > own; });

@@ -79,8 +79,8 @@ class Looks {
   /// of this variant decide. Otherwise `key` decides: the values that all runs of the curve share.
   ///
   /// A StatedLook is used under two conditions: the curve has the parameter values in
-  /// StatedLook::where, and all variants with these values have the same value of the key that
-  /// decides the colour. The curve then has the stated colour. It also has the stated symbol,
+  /// StatedLook::where, and in all variants with these values the parameter that decides the colour
+  /// is the same. The curve then has the stated colour. It also has the stated symbol,
   /// unless other curves of the panel have the values in StatedLook::where, too.
   Look of(RunGroup curve, const nlohmann::json& key) const;
 

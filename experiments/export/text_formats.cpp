@@ -17,8 +17,8 @@ namespace shearcell {
 namespace {
 
 /// Whether ASE or OVITO may read a quoted text as a number, a logical value or JSON. Both programs
-/// ignore the quotes. ASE splits the text at spaces and commas. If the first item is none of these,
-/// ASE does not convert the text, so only the first item is tested.
+/// ignore the quotes. ASE splits the text at spaces and commas. It converts the text only if the
+/// first item is a number, a logical value or JSON, so only the first item is tested.
 bool looks_like_a_value(std::string_view text) {
   std::string word = lower(text.substr(0, text.find_first_of(" ,")));
   const auto of_a_name = [](char c) { return c >= 'a' && c <= 'z' && c != 'd' && c != 'e'; };

@@ -170,20 +170,20 @@ struct VariantCheck {
       for (const char* key : {"start_seed", "start_cycle", "start_noise_d"}) {
         const Field& field = *find_field(key);
         if (field.get(p) == field.get({})) continue;
-        report({key}, "has no effect without start",
+        report({key}, "has no effect without `start`",
                "Add `start: {experiment: NAME}`, or remove this key.");
       }
       return;
     }
     if (p.protocol == ProtocolKind::stiffen) {
       refuse(start.at, "start", "cannot be used with protocol stiffen",
-             "A recorded state can only be sheared.");
+             "A run that starts from a recorded state can only shear it.");
     }
     if (start.run.empty() && find("start_seed") == nullptr) {
       refuse(start.at, "start", "lacks seed", "Give the seed of the recorded run: `seed: 3`.");
     }
     if (scale.settle_at.line > 0) {
-      refuse(scale.settle_at, "settle", "has no effect with start, because nothing settles",
+      refuse(scale.settle_at, "settle", "has no effect with `start`, because nothing settles",
              "Leave it out.");
     }
   }
@@ -697,7 +697,7 @@ void check_variants(const Manifest& manifest) {
     if (!scale.looks.empty()) needed.push_back({scale.looks.back(), scale.seeds.at});
     for (const auto& [number, at] : needed) {
       if (number <= seeds) continue;
-      problems.add(at, "seeds", "are fewer than `looks` or the sweep needs", number.dump(),
+      problems.add(at, "seeds", "are too few for `looks` or for the sweep", number.dump(),
                    format("Write `seeds: {}`, or list this many seeds.", number.dump()));
     }
     if (variants > ManifestLimits::runs || variants * seeds > ManifestLimits::runs - runs) {

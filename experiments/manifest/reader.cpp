@@ -1156,7 +1156,7 @@ struct Reader {
     reject_if(!plot.y.empty() && is_of_run(plot.y) && !of_run, &in,
               plot.y + " has one value for each run", "Use a parameter as x.");
     reject_if(is_curve, in.find("minus"), not_with_curve,
-              "Use a number as y, because curves cannot be subtracted.");
+              "As y, use a measure that is a number: curves cannot be subtracted.");
     reject_value_if(plot.show == Show::rms && !is_curve && plot.x != "cycle" && !of_run,
                     in.find("show"), fmt::format("cannot be used with {} as x", plot.x),
                     "As x, use `cycle`, a parameter, or a measure with one value for each run.");

@@ -176,11 +176,13 @@ const Stage& recorded_run(const Manifest& manifest, const Scale& scale, const Va
                                  cycle == static_cast<double>(ask.target_cycles);
                         });
   if (newest < cycle || (newest > cycle && !recorded)) {
-    refuse(manifest.file, start.at, "start",
-           fmt::format("run {:.8} has no checkpoint at cycle {}", found.front()->id, cycle), "",
-           fmt::format("The newest is at cycle {}. Extend the run, name another cycle, or run its "
-                       "manifest again with `checkpoints: {{every_cycles: 1}}`.",
-                       newest));
+    refuse(
+        manifest.file, start.at, "start",
+        fmt::format("run {:.8} has no checkpoint at cycle {}", found.front()->id, cycle), "",
+        fmt::format(
+            "The newest checkpoint is at cycle {}. Extend the run, name another cycle, or run its "
+            "manifest again with `checkpoints: {{every_cycles: 1}}`.",
+            newest));
   }
   require_same_cell(manifest, scale, variant, *found.front());
   return *found.front();

@@ -218,7 +218,7 @@ std::vector<Variant> variants_of(const Scale& scale) {
           fmt::format("{}{}={}", made.swept.empty() ? "" : ",", axis.key, value_text(value));
       made.swept[axis.key] = value;
     };
-    // Number of grid points that have the same values of all axes before `axis`.
+    // Number of consecutive grid points that differ only in `axis` and in the axes after it.
     std::uint64_t block = variants.size() / rows;
     for (const SweepAxis& axis : scale.sweep.grid) {
       const std::uint64_t place = index / rows % block;

@@ -223,7 +223,7 @@ TEST(Expand, AZipHasANumberOfSeedsForEachVariant) {
   EXPECT_EQ(expand(manifest, {.seeds = 2}).runs.size(), 4U) << "of each variant";
   EXPECT_EQ(expand(manifest, {.only_seeds = {8}}).runs.size(), 1U);
   EXPECT_EQ(message_of<ManifestError>([&] { parse(text + "scales: {desk: {seeds: 2}}\n"); }),
-            "test.yaml:3:54: seeds: are fewer than `looks` or the sweep needs (got 3). Write "
+            "test.yaml:3:54: seeds: are too few for `looks` or for the sweep (got 3). Write "
             "`seeds: 3`, or list this many seeds.");
 }
 

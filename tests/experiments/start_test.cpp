@@ -224,7 +224,7 @@ TEST_F(Started, RunsOfAnotherPlanAreKnownBeforeTheyAreComputed) {
   EXPECT_NE(refused("sweep: {grid: {amplitude_rad: [0.07]}}\n").find("has no run of tiny"),
             std::string::npos);
   EXPECT_NE(refused("sweep: {zip: {amplitude_rad: [0.1], start_cycle: [3]}}\n")
-                .find("has no checkpoint at cycle 3. The newest is at cycle 2."),
+                .find("has no checkpoint at cycle 3. The newest checkpoint is at cycle 2."),
             std::string::npos);
   const Plan newer =
       expand(parse_manifest(tiny_manifest("  drag_kg_per_s: 2.0e-3\n", amplitudes), "tiny.yaml"));
@@ -233,8 +233,9 @@ TEST_F(Started, RunsOfAnotherPlanAreKnownBeforeTheyAreComputed) {
   const std::string sparse = tiny_manifest("  cycles: 3\n", "checkpoints: {every_cycles: 2}\n");
   known.clear();
   add_as_computed(expand(parse_manifest(sparse, "tiny.yaml")), known);
-  EXPECT_NE(refused("").find("has no checkpoint at cycle 1. The newest is at cycle 3. Extend the "
-                             "run, name another cycle"),
+  EXPECT_NE(refused("").find(
+                "has no checkpoint at cycle 1. The newest checkpoint is at cycle 3. Extend the "
+                "run, name another cycle"),
             std::string::npos);
   EXPECT_EQ(second("", "sweep: {grid: {start_cycle: [0, 2, 3]}}\n").size(), 3U);
 }
@@ -343,7 +344,8 @@ TEST_F(Started, WhatDoesNotFitTheStoreIsRefused) {
             std::string::npos);
   const std::string late = ", variant: \"fluid=cell\"";
   EXPECT_NE(refusal(clones(late, "", "sweep: {grid: {start_cycle: [1, 3]}}\n"))
-                .find("has no checkpoint at cycle 3. The newest is at cycle 2. Extend the run, "),
+                .find("has no checkpoint at cycle 3. The newest checkpoint is at cycle 2. Extend "
+                      "the run, "),
             std::string::npos);
   EXPECT_NE(refusal(clones(late, "  height_over_width: 1.5\n"))
                 .find("height_over_width: differs from the value of run "),
