@@ -44,8 +44,9 @@ Term gumbel(double z, bool censored) {
   return censored ? Term{-power, power, power} : Term{z - power, power - 1, power};
 }
 
-/// z is linear in three parameters: h = 1 / sigma, and the two components of g = mu / sigma. Row k
-/// of `terms` has the coefficients for value k. A fixed parameter has a column of zeros in `terms`.
+/// z = (y - mu) / sigma is linear in three parameters: h = 1 / sigma, and the two components of
+/// g = mu / sigma, one for each term of the line mu = a + b x. Row k of `terms` has the
+/// coefficients for value k. A fixed parameter has a column of zeros in `terms`.
 struct Sample {
   CensoredValues values;
   Eigen::MatrixX3d terms;

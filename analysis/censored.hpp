@@ -44,11 +44,12 @@ std::optional<Estimate> censored_mean(std::span<const CensoredValue> values,
 /// in sigma: G. Y. Zou and A. Donner, Stat. Med. 27, 1693 (2008). For independent groups Welch's
 /// degrees of freedom are used. If `paired`, a[k] and b[k] share a packing. The correlation of the
 /// two means is then the correlation of the residuals (G. Y. Zou, Psychol. Methods 12, 399 (2007)).
-/// Pairs with a censored value are included. For a censored value, the residual is the expected
-/// residual of the true value, given that the true value is above the censored value. Treating
-/// a[k] - b[k] as one censored value would give a bias, since b[k] decides whether the difference
-/// is censored. If no value is censored, the interval is Welch's interval or, for pairs, Student's
-/// interval. Empty if a group has fewer than two observed values.
+/// A residual is a value minus the mean of its group. Pairs with a censored value are included: the
+/// residual of a censored value is unknown, so its expectation is used, given that the true value
+/// is larger than the censored value. Treating a[k] - b[k] as one censored value would give a bias,
+/// because it depends on b[k] whether this difference is censored. If no value is censored, the
+/// interval is Welch's interval or, for pairs, Student's interval. Empty if a group has fewer than
+/// two observed values.
 std::optional<Estimate> censored_difference(std::span<const CensoredValue> a,
                                             std::span<const CensoredValue> b, bool paired,
                                             double level = confidence_level);

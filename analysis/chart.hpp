@@ -93,7 +93,8 @@ struct Series {
   bool large = false;        ///< larger points, which stay visible around smaller points
   std::string variant = {};  ///< name of the curve's variant in the table; "": no variant
   std::vector<ChartPoint> points = {};
-  /// Independent packings in the curve. 0: not given, or each run contributes to only one point.
+  /// Number of independent packings in the curve. 0 if it is not given, and for curves in which
+  /// each run contributes to only one point.
   std::size_t runs = 0;
   double shift = 0;  ///< added to x in the drawing, so that points with equal x stay visible
 };

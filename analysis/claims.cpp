@@ -126,9 +126,9 @@ Verdict decided_by(const ClaimSpec& claim, const Claim& stated, RunGroup a, RunG
 /// is made when all these runs have ended. If no looks are planned, there is one look, at all seeds
 /// that at least one side has. Returns the verdict of the first look that decides the claim. If no
 /// look decides the claim, the verdict is undecided. The numbers of an undecided verdict use the
-/// leading seeds whose runs have all ended, or all seeds if the first seed still has a planned run.
-/// Seeds that are in no look are used only in Verdict::note. `planned`: the two sides with the
-/// planned runs (Frame::pending).
+/// seeds before the first seed with a planned run, or all seeds if there is no seed before it.
+/// Seeds that are in no look are used only in Verdict::note. `planned`: the planned runs of the two
+/// sides (Frame::pending).
 Verdict at_looks(const ClaimSpec& claim, Claim stated, const ClaimSides& sides,
                  const ClaimSides& planned, const Frame& frame) {
   const auto seeds_of = [](std::initializer_list<RunGroup> groups) {
@@ -268,8 +268,9 @@ std::string remedy_for(RunGroup side) {
   return values.empty() ? "" : fmt::format(" Add `{}` or other values.", fmt::join(values, ", "));
 }
 
-/// The set of swept values of the runs of side `k`, without the keys that select this side. A claim
-/// may average over the variants of each side if both sides have the same set.
+/// The combinations of swept values among the runs of side `k`. The keys that select side `k` are
+/// left out. A claim may average over the variants of each side if both sides have the same
+/// combinations.
 std::set<nlohmann::json> others_of(const ClaimSpec& claim, const ClaimSides& sides, std::size_t k) {
   std::set<nlohmann::json> others;
   for (const FrameRun* run : sides.runs.at(k)) {

@@ -48,8 +48,8 @@ struct ClaimSpec {
   /// measure is above (Relation::higher) or below (Relation::lower) this number.
   double margin = 0;
   bool relative = false;  ///< the margin limits the relative difference
-  /// The claim as a sentence. If empty, the sentence follows from the keys. With `for_each:
-  /// amplitude_rad`, for example, "{amplitude_rad}" is replaced by the amplitude.
+  /// The claim as a sentence. If empty, stated() makes the sentence from the other keys. With
+  /// `for_each: amplitude_rad`, for example, "{amplitude_rad}" is replaced by the amplitude.
   std::string statement = {};
   Relation is = Relation::same;
   bool optional = false;               ///< true: no verdict if a group has no runs
@@ -84,7 +84,7 @@ std::vector<ClaimSpec> each_of(const ClaimSpec& claim, std::span<const FrameRun>
 Claim stated(const ClaimSpec& claim, const std::array<std::string, 2>& sides);
 
 /// One sentence for each reason why the sides cannot be compared. `planned`: whether the sides hold
-/// planned runs. A side without runs is such a reason only if `planned` is true.
+/// planned runs. A side without runs gives a sentence only if `planned` is true.
 std::vector<std::string> problems_of_sides(const ClaimSpec& claim, const ClaimSides& sides,
                                            bool planned);
 

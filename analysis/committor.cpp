@@ -23,9 +23,10 @@ Grains grains_of(const CrystalliteMap& map, const std::set<std::int32_t>& labels
 /// Numbers of grains in a crystallite, by the origin of the grains. The comment on followed()
 /// defines "remembered", "descendant" and "foreign crystallite".
 struct Origin {
-  std::size_t own = 0;                           ///< remembered grains
-  std::size_t last = 0;                          ///< grains of the most recent descendants
-  std::map<std::int32_t, std::size_t> of_other;  ///< label of another crystallite -> its grains
+  std::size_t own = 0;   ///< remembered grains
+  std::size_t last = 0;  ///< grains that were in descendants in the latest cycle with descendants
+  /// Label of a foreign crystallite -> number of grains that come from it.
+  std::map<std::int32_t, std::size_t> of_other;
 
   bool continues_another() const {
     return std::ranges::any_of(of_other, [&](const auto& other) { return other.second > own; });

@@ -22,8 +22,8 @@ inline constexpr std::size_t cycles_gone = 2;
 /// The last number is above the last bin. In each state at most one crystallite of each bin is
 /// followed. [choice]
 inline constexpr std::int32_t followed_bins[] = {3, 5, 8, 13, 21};
-/// Number of earlier cycles whose descendants are used to recognize a new descendant, as described
-/// at followed(). [choice]
+/// A grain that was in a descendant is remembered for this number of cycles, as described at
+/// followed(). [choice]
 inline constexpr std::size_t remembered_cycles = 3;
 
 /// Labels of the crystallites to follow: in each size bin, the one that has the lowest grain id.
@@ -45,9 +45,9 @@ struct Followed {
 /// A crystallite C of the current cycle continues a foreign crystallite X if C has more grains of X
 /// than remembered grains; a grain that is remembered does not count as a grain of X. C is a
 /// descendant if it has at least `least_descendant` grains, has a remembered grain, and continues
-/// no foreign crystallite. The followed crystallite has merged if two conditions hold: there is no
-/// descendant, and at least half of the grains of the last descendants are in one crystallite that
-/// continues a foreign crystallite.
+/// no foreign crystallite. The followed crystallite has merged if two conditions hold: the current
+/// cycle has no descendant, and one crystallite that continues a foreign crystallite has at least
+/// half of the grains that were in descendants in the latest cycle with descendants.
 Followed followed(std::span<const CrystalliteMap* const> maps, std::int32_t label);
 
 /// Outcome for a followed crystallite. `undecided`: the clone ends before the outcome is known.

@@ -26,7 +26,8 @@ inline constexpr double crystalline_phi_local = 0.72;  ///< lower limit of phi_l
 inline constexpr double q6_fcc = 0.575;
 inline constexpr double q6_hcp = 0.485;
 inline constexpr double q6_tolerance = 0.02;  ///< upper limit of |q6 - q6_fcc| or |q6 - q6_hcp|
-/// Smallest face that connects two crystalline grains, as a fraction of the mean cell surface.
+/// Smallest area of a Voronoi face that connects two crystalline grains, as a fraction of the mean
+/// surface area of the Voronoi cells.
 inline constexpr double connecting_face = 0.01;
 
 enum class Structure : std::uint8_t { disordered, fcc, hcp };
@@ -60,8 +61,8 @@ struct CrystalliteMap {
 
 /// `crystallite`: the index of each grain's crystallite, from crystallites(). Centres refer to the
 /// untilted cell: the displacement of the side walls at the height of each grain is subtracted from
-/// its x, so that 0 <= x <= width. z is the circular mean over the period, in [0, depth). It is
-/// accurate for crystallites that are small compared with the period.
+/// its x, so that 0 <= x <= width. z is the circular mean in [0, depth), because the cell is
+/// periodic along z. It is accurate for crystallites that are small compared with the depth.
 CrystalliteMap crystallite_map(std::span<const std::int32_t> crystallite, const Cell& cell,
                                const WallPose& pose, const Eigen::Matrix3Xd& positions);
 

@@ -20,7 +20,7 @@ using Number = std::function<double(double value)>;
 
 /// One number for each run of one or two groups, and the reasons why some runs have no number.
 struct Values {
-  std::map<const FrameRun*, CensoredValue> numbers;  ///< not finite if a run has no number
+  std::map<const FrameRun*, CensoredValue> numbers;  ///< NaN or infinite: the run has no number
   std::size_t runs = 0, censored = 0;
   std::map<Missing, std::size_t> missing;
   std::size_t not_positive = 0;  ///< runs left out because their value has no logarithm

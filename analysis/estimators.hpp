@@ -31,7 +31,8 @@ struct Estimator {
   /// Claims may compare measures of runs (true), of checkpoints (false), or of either (empty).
   std::optional<bool> of_run = false;
   bool over_variants = false;  ///< a group of runs may contain several variants
-  /// Its claims always have one group. Other claims have one only if they have a published number.
+  /// Claims with this estimator always have one group. With any other estimator, a claim has one
+  /// group only if it has a published number.
   bool one_side = false;
   bool compares_variants = false;  ///< the group must contain several variants
   /// The number with which a claim is compared if it has one group and no published number.
@@ -62,12 +63,13 @@ extern const Estimator mean_over_cycles, mean_over_phi, number_of_the_run, chang
 /// Whether the claim compares waiting times for an event, which may come after the end of a run.
 bool compares_waits(const ClaimSpec& claim);
 
-/// Decides the claim from the mean of `a` minus the mean of `b`. Runs that share a packing form
-/// pairs. Pairs are compared by Student's t, and runs without a partner are left out. If there are
-/// no pairs, the interval is Welch's. Runs that end before an event are censored (censored.hpp). A
-/// verdict needs least_runs runs or pairs. In each group, at least three quarters of the runs must
-/// have a number from `scalar`. If there are pairs, at least three quarters of the packings of each
-/// group must be in a pair. Otherwise the runs that are left out could bias the verdict. [choice]
+/// Decides the claim from the mean of `a` minus the mean of `b`. A run of `a` and a run of `b` are
+/// a pair if they have the same packing. Pairs are compared by Student's t, and runs without a
+/// partner are left out. If there are no pairs, the interval is Welch's. Runs that end before an
+/// event are censored (censored.hpp). A verdict needs least_runs runs or pairs. In each group, at
+/// least three quarters of the runs must have a number from `scalar`. If there are pairs, at least
+/// three quarters of the packings of each group must be in a pair. Otherwise the runs that are left
+/// out could bias the verdict. [choice]
 Verdict compare(const Claim& claim, const Scalar& scalar, RunGroup a, RunGroup b);
 
 /// Decides the claim from the mean over runs minus the published number.
@@ -77,8 +79,8 @@ Verdict compare_with(const Claim& claim, const Scalar& scalar, RunGroup runs, do
 /// censored at its last cycle.
 std::vector<Waiting> waits_for_onset(RunGroup runs);
 
-/// Converts the number of a run. If the run ended before the event, the result is censored, and its
-/// number is the lower bound RunValue::above. NaN if neither the number nor the bound is known.
+/// Converts a run's value. If the run ended before the event, the result is censored and holds the
+/// lower bound RunValue::above. It holds NaN if neither the value nor the bound is known.
 CensoredValue censored_value(const RunValue& value);
 
 /// Averages `values` (one per run) over the runs of each packing. A mean is censored if one of the

@@ -51,8 +51,8 @@ struct Frame {
   /// Seeds of the experiments at this scale, in order. If empty, each verdict uses all runs in the
   /// frame.
   std::vector<std::uint64_t> seeds = {};
-  /// Number of seeds n of each planned look (interim analysis). Seeds without a finished or planned
-  /// run are skipped. The look uses the runs of the first n seeds that are left.
+  /// Number of seeds n of each planned look (interim analysis). The look uses the runs of the first
+  /// n seeds that have a finished or planned run.
   std::vector<std::size_t> looks = {};
 
   Frame(std::vector<FrameRun> all = {}, std::vector<nlohmann::json> of = {})  // NOLINT

@@ -15,8 +15,8 @@ using BySize = Eigen::Array<double, GrowthCurve::largest, 1>;
 using FromSize = Eigen::Matrix<double, GrowthCurve::largest, GrowthCurve::largest>;
 
 /// Columns of GrowthCurve::Sums: moments 0 to 2 of the number of crystallites, moments 0 and 1 of
-/// the excess (growing minus shrinking crystallites), and the excess summed from the size of the
-/// row to the largest size.
+/// the excess (growing minus shrinking crystallites), and the excess summed over this row's size
+/// and all larger sizes.
 enum Column : Eigen::Index { all_0, all_1, all_2, excess_0, excess_1, tail };
 
 double log_size(Eigen::Index k) {
@@ -50,9 +50,9 @@ auto smooth(const Sums& sums) {
   return (scatter > 1e-9 * n * xx).select((xx * y - x * xy) / scatter, y / n).eval();
 }
 
-/// The size that GrowthCurve::critical_size() defines. Infinity if no zero of delta_rho has a
-/// positive sum. Minus infinity in the third case of critical_size(), in which growth outweighs
-/// shrinkage from size 1 on.
+/// The size that GrowthCurve::critical_size() defines. Infinity in the second of the three cases
+/// in which critical_size() is empty: above each rise of delta_rho through zero, shrinkage is at
+/// least as large as growth. Minus infinity in the third: from size 1 on, growth is larger.
 template <class Sums>
 double rise(const Sums& sums) {
   const auto delta = smooth(sums);
@@ -71,7 +71,7 @@ double rise(const Sums& sums) {
 }
 
 /// The largest size at which the summed excess (column `tail`) has its maximum. Infinity if the
-/// maximum is not positive; otherwise minus infinity if the maximum is reached at size 1.
+/// maximum is not positive. Minus infinity if the maximum is positive and is reached at size 1.
 template <class Sums>
 double best_division(const Sums& sums) {
   const auto excess = sums.col(tail);
@@ -114,9 +114,10 @@ void follow(const CrystalliteMap& now, const CrystalliteMap& later, GrowthBySize
     if (l == later.grain.size()) break;
     if (later.grain[l] == now.grain[k]) ++shared[{now.label[k], later.label[l]}];
   }
-  // Where the grains of a crystallite C of `now` are in `later`.
+  // For one crystallite C of `now`: the places of its grains in `later`.
   struct Outcome {
-    // Grains of C in crystallites of `later` that are larger than C, as large, or smaller.
+    // Numbers of grains of C whose crystallite in `later` is larger than C, as large as C, or
+    // smaller than C.
     std::int32_t larger = 0, same = 0, smaller = 0;
     std::int32_t most = 0;  // number of grains of C in `end`
     std::size_t end = 0;    // the crystallite of `later` that has the most grains of C
@@ -147,7 +148,7 @@ void follow(const CrystalliteMap& now, const CrystalliteMap& later, GrowthBySize
     if (2 * larger > size) {
       ++(origins[end].size > size ? count.absorbed : count.grew);
     } else if (2 * (size - larger - same) > size) {
-      // The condition counts the grains that are in smaller crystallites or in no crystallite.
+      // More than half of the grains are in smaller crystallites or in no crystallite.
       ++(2 * smaller > size ? count.shrank : count.vanished);
     }
   }

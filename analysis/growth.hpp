@@ -15,20 +15,20 @@
 
 namespace shearcell {
 
-/// How many crystallites of one size grew, shrank, ... A crystallite is counted in at most one
-/// member. It is not counted, for example, if more than half of its grains are later in a
-/// crystallite of the same size.
+/// How many crystallites of one size s grew, shrank, ... A crystallite is counted by where its
+/// grains are at the later time, and in at most one member. It is not counted, for example, if more
+/// than half of its grains are then in a crystallite of size s.
 struct GrowthCount {
-  /// Crystallites of which more than half of the grains are later in larger crystallites. The
-  /// crystallites in `absorbed` are not counted here.
+  /// More than half of the grains are in crystallites larger than s. The crystallites in `absorbed`
+  /// are not counted here.
   std::size_t grew = 0;
-  /// Crystallites that meet the condition of `grew`, but became part of a crystallite to which
-  /// another, larger crystallite contributed the most grains.
+  /// More than half of the grains are in crystallites larger than s, but the crystallite merged
+  /// with a larger one, which contributed the most grains to the merged crystallite.
   std::size_t absorbed = 0;
-  /// Crystallites of which more than half of the grains are later in smaller crystallites.
+  /// More than half of the grains are in crystallites smaller than s.
   std::size_t shrank = 0;
-  /// Crystallites of which more than half of the grains are later in smaller crystallites or in
-  /// none. The crystallites in `shrank` are not counted here.
+  /// More than half of the grains are in crystallites smaller than s or in no crystallite. The
+  /// crystallites in `shrank` are not counted here.
   std::size_t vanished = 0;
 
   std::size_t larger() const { return grew + absorbed; }     ///< "growing" in the supplement
@@ -37,7 +37,8 @@ struct GrowthCount {
   bool operator==(const GrowthCount&) const = default;
 };
 
-/// Counts for each crystallite size [grains]. Each size of a followed crystallite has an entry.
+/// Counts for each crystallite size [grains]. A size has an entry if a crystallite of this size
+/// was followed.
 using GrowthBySize = std::map<std::int32_t, GrowthCount>;
 
 /// For each crystallite of `now`, adds to `counts` whether it had grown, shrunk, ... in `later`.
@@ -88,15 +89,15 @@ class GrowthCurve {
   /// the zero with the largest sum is returned. Empty in three cases: there are fewer than
   /// least_bootstrap_runs runs; no such zero has a positive sum; or delta_rho > 0 at size 1, and
   /// the sum over all sizes is at least as large as the sum above each zero. The interval comes
-  /// from the bootstrap. An end of the interval is infinite if too many bootstrap selections have
-  /// no such zero.
+  /// from the bootstrap. An end of the interval is infinite if too many bootstrap samples have no
+  /// critical size.
   std::optional<Estimate> critical_size() const;
   /// The size s for which the number of growing minus the number of shrinking crystallites, among
   /// all crystallites of at least s grains, is largest. At s the monotone (isotonic) fit of the
   /// unsmoothed delta_rho crosses zero (M. Ayer et al., Ann. Math. Stat. 26, 641 (1955)). This size
   /// serves as a check of critical_size(), which is more precise.
   std::optional<Estimate> monotone_critical_size() const;
-  /// 90 % interval of the critical size in repeated studies with `runs` runs.
+  /// 90 % interval of the critical size in repeated studies, each with `runs` runs.
   Interval repeated_critical_size(std::size_t runs) const;
 
  private:

@@ -10,8 +10,9 @@
 namespace shearcell {
 namespace {
 
-/// Means over the checkpoints of the run in each bin of phi: pairs of phi and the column's value,
-/// ascending. Checkpoints without a finite phi and bins without a finite value are left out.
+/// For each bin of phi, in ascending order: the mean of phi and the mean of the column, over the
+/// run's checkpoints in this bin. Checkpoints without a finite phi and bins without a finite value
+/// are left out.
 std::vector<std::pair<double, double>> means_over_phi(const FrameRun& run,
                                                       const NumberColumn& column) {
   std::map<double, std::pair<std::vector<double>, std::vector<double>>> bins;

@@ -23,7 +23,7 @@ using nlohmann::json;
 Verdict decide_pooled(const ClaimSpec& claim, const Claim& stated, RunGroup a, RunGroup b) {
   const Scalar number = estimator_by_keys(claim).scalar(claim);
   const RunGroup sides[] = {a, b};
-  std::vector<json> others;  // parameters of each run without the keys of `between`
+  std::vector<json> others;  // for each run, its parameters except the keys of `between`
   for (const RunGroup side : sides) {
     for (const FrameRun* run : side) {
       json& other = others.emplace_back(run->parameters);

@@ -19,8 +19,8 @@
 namespace shearcell {
 namespace {
 
-/// Numbers of cycles over which crystallites are followed, including the supplement's number for
-/// each amplitude (n_bin). The critical size depends on this number.
+/// Numbers of cycles over which crystallites are followed. They include the supplement's number for
+/// each amplitude (n_bin). The critical size depends on the number of cycles.
 std::set<std::int64_t> cycles_to_follow() {
   std::set<std::int64_t> cycles = {1, 2, 5, 10, 20};
   for (const PublishedAmplitude& one : published_amplitudes) cycles.insert(one.n_bin);
@@ -72,7 +72,7 @@ struct AmplitudeGrowth : AmplitudeRuns {
   std::optional<double> onset_cycle = {};  ///< median over runs
   // Results for published_bin(). They are stored because each one needs a bootstrap.
   std::optional<Estimate> monotone = {}, without_absorbed = {}, without_vanished = {};
-  /// 90 % interval of the critical size in repeated studies with published_runs runs.
+  /// 90 % interval of the critical size in repeated studies, each with `published_runs` runs.
   Interval repeated = {};
 };
 
@@ -178,7 +178,7 @@ Table critical_table(std::span<const AmplitudeGrowth> all) {
 }
 
 /// The critical size as a function of the number of cycles over which crystallites are followed.
-/// The supplement's critical size is shown at the supplement's n_bin.
+/// The supplement's critical size is shown at n_bin, the supplement's number of cycles.
 Table followed_table(std::span<const AmplitudeGrowth> all) {
   Table table{.name = "C_followed", .columns = {"amplitude_rad", "cycles_followed"}};
   add_size_columns("critical_size", table.columns);
@@ -299,7 +299,8 @@ Verdict critical_size_is_published(const AmplitudeGrowth& one) {
              fmt::format("critical size, relative difference from {} grains", published), relative,
              counts.size(), note, growth_entered(one.runs, one.published->n_bin));
   if (critical && !(low > 0 && high / low <= 1 + 2 * margin_critical_size)) {
-    verdict.runs_needed.reset();  // the supplement's error alone exceeds the margin
+    // No number of runs suffices: the sampling error of the supplement's value exceeds the margin.
+    verdict.runs_needed.reset();
   }
   return verdict;
 }

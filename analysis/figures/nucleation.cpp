@@ -122,9 +122,10 @@ Table rate_table(const Groups& groups, Region region, const std::string& name) {
   return table;
 }
 
-/// The exponent a in rate ~ n^a if the rate is proportional to the area of the walls, N^(2/3). The
-/// cell has N grains, and the region has n. Computed from the smallest and the largest cells. The
-/// result is less than 2/3, because n / N grows with N. NaN unless n > 0 and n grows with N.
+/// The exponent `a` in rate ~ n^a, if the rate is proportional to the area of the walls, N^(2/3).
+/// The cell has N grains, and the region has n grains. Computed from the smallest and largest
+/// cells. The result is less than 2/3, because n / N grows with N. NaN unless n > 0 and n grows
+/// with N.
 double exponent_of_walls(std::span<const FrameRun> runs, Region region) {
   const auto sizes = runs_by(runs, "grains");
   const auto& [smallest, in_smallest] = *sizes.begin();
