@@ -58,7 +58,7 @@ struct GrainScale {
   bool logarithmic = false;
   std::vector<std::string> classes = {};
   bool whole = false;         ///< the value is a whole number, such as the number of a class
-  double of_wall_grains = 0;  ///< the value of wall grains in exports
+  double of_wall_grains = 0;  ///< the value that exports write for wall grains
 };
 
 struct Measure {
@@ -127,8 +127,8 @@ struct Provider {
   nlohmann::json parameters = nlohmann::json::object();  ///< settings on which the results depend
   std::vector<Measure> measures = {};  ///< either all are per-grain measures, or none is
   /// Returns an object with a value for each measure, by name. A curve is {"x", "y"}; a measure of
-  /// each grain is an array. A measure that cannot be computed is left out, for example because the
-  /// run has no earlier checkpoint, or because the stage is not a shear.
+  /// each grain is an array. A measure is left out if it cannot be computed, for example because
+  /// the run has no earlier checkpoint or because the stage is not a shear.
   std::function<nlohmann::json(const MeasureInput& input)> compute = {};
   /// If not 0, the provider needs a second checkpoint, this many cycles earlier.
   std::uint64_t cycles_back = 0;
@@ -139,8 +139,9 @@ struct Provider {
 
   /// Name and parameters as one text. Providers with equal texts compute the same results.
   std::string key() const { return name + " " + parameters.dump(); }
-  /// Whether results are stored. Results from `record` and `history` are not: they are cheap to
-  /// compute. Measures of each grain are not: they need more space than the checkpoint.
+  /// Whether results are stored. Results from `record` and `history` are not stored, because they
+  /// are cheap to compute. Measures of each grain are not stored, because they need more space than
+  /// the checkpoint.
   bool is_kept() const;
   bool has(MeasureKind kind) const;
   /// Adds a result to `measures`. Throws AnalysisError if the result is not from this provider.

@@ -23,14 +23,14 @@ inline constexpr double nominal_height = 1.675;  ///< [L], supplement E
 
 /// Whether a nucleus counts in each cycle (`always`) or only in the cycle in which it is first seen
 /// (`first`). A crystallite of at least 15 grains is a new nucleus if fewer than half of its grains
-/// were in such a crystallite before. A new nucleus of more than 25 grains is left out.
-/// [choice]
+/// were in crystallites of at least 15 grains at earlier checkpoints. A new nucleus of more than
+/// 25 grains is left out. [choice]
 enum class Seen { always, first };
 
-/// Positions along `axis` of the centres of mass of all crystallites of 15 to 25 grains in a run. x
-/// starts 1 d outside the left plane and is divided by width + 2 d. y and y_nominal start at the
-/// bottom plane; CellAxis states the height by which each is divided. x and y are in [0, 1];
-/// y_nominal can exceed 1. The supplement leaves these definitions open.
+/// Positions along `axis` of the centres of mass of all crystallites of 15 to 25 grains in a run.
+/// x is measured from 1 d outside the left plane, in units of width + 2 d. y and y_nominal are
+/// measured from the bottom plane, in units of the heights that CellAxis states. x and y are in
+/// [0, 1]; y_nominal can exceed 1. The supplement leaves these definitions open.
 std::vector<double> nucleus_places(const FrameRun& run, CellAxis axis, Seen seen = Seen::always);
 
 struct DensityBin {
@@ -64,8 +64,8 @@ struct NucleationRate {
 };
 
 /// Rates in ascending bins of phi. Bins in which no run spent time are left out. The time between
-/// two checkpoints counts in the bin of the first checkpoint, whose phi is not yet raised by a
-/// growing crystallite. Runs that begin with a critical crystallite are left out.
+/// two checkpoints counts in the bin of the first checkpoint, because a growing crystallite has not
+/// yet raised phi there. Runs that begin with a critical crystallite are left out.
 std::vector<NucleationRate> nucleation_rates(RunGroup runs, Region region);
 
 /// Contribution of one run to the rate in one range of phi: the time that the run spends in this
@@ -87,8 +87,8 @@ inline constexpr double rate_step = 0.0005;
 /// each amplitude. Since a run has at most one event, the interval comes from the profile
 /// likelihood (D. R. Cox and D. Oakes, Analysis of Survival Data, 1984). It contains all exponents
 /// whose log-likelihood is at most a certain amount below the maximum. If runs share a packing,
-/// the variance of the packings' scores may exceed the variance expected for independent runs. The
-/// amount is then multiplied by the ratio of these two variances (L. Pace, A. Salvan, N. Sartori,
+/// this amount is multiplied by a factor of at least 1: the variance of the packings' scores,
+/// divided by the variance expected for independent runs (L. Pace, A. Salvan, N. Sartori,
 /// Stat. Sinica 21, 129 (2011)).
 ///
 /// Empty for fewer than least_runs packings. Also empty unless at least one event has a comparison

@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr double pair_bin_d = 0.02;        // width of the bins in r [d]
-constexpr double pair_reach_d = 5;         // largest r; at most half the depth [d]
+constexpr double pair_reach_d = 5;         // largest r [d]; smaller in small regions
 constexpr double wave_bin_per_d = 0.25;    // width of the bins in |k| [1/d]
 constexpr double largest_wave_per_d = 25;  // largest |k| [1/d]
 
@@ -50,7 +50,7 @@ double pair_volume(const InteriorRegion& region, double from, double to) {
   return 4 * kPi * region.depth * (integral(to) - integral(from));
 }
 
-/// A curve with x in the middles of equal bins. y is NaN until a bin is filled.
+/// A curve with x in the middles of equal bins. The y of each bin is NaN until this bin is filled.
 MeasuredCurve empty_bins(double width, std::size_t count) {
   MeasuredCurve function;
   for (std::size_t b = 0; b < count; ++b) {
@@ -159,7 +159,8 @@ MeasuredCurve pair_correlation(const MeasureInput& input) {
 
 /// S(k) of the interior grains: |sum exp(i k r)|^2 / n, averaged over wave vectors in bins of |k|.
 /// The wave vectors are reciprocal lattice vectors of the region, so a uniform density gives S = 0.
-/// Each bin uses at most 48 wave vectors, evenly spaced in the order of their components.
+/// In each bin, the wave vectors are sorted by their components and every m-th one is used, where m
+/// is the smallest number for which at most 48 are used.
 MeasuredCurve structure_factor(const MeasureInput& input) {
   const InteriorRegion region = interior_region(input.checkpoint->cell, pose_of(*input.checkpoint));
   const Eigen::Matrix3Xd sites = interior_sites(input);

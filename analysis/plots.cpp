@@ -174,7 +174,7 @@ struct Curve {
   json key;             ///< the keys that distinguish curves, and their values in this curve
   std::string variant;  ///< `key` as text; in the CSV with ';' instead of ','
   std::vector<Trace> traces = {};
-  std::size_t style = 0;  ///< index in PlotSpec::series; equal to its size if there is no style
+  std::size_t style = 0;  ///< index in PlotSpec::series; series.size() if there is no style
   Text title = {};
   Look look = {};
 };
@@ -238,8 +238,8 @@ void evaluate(const PlotSpec& plot, std::span<const NumberColumn> columns, const
   }
 }
 
-/// Replaces x, a measure of the whole run, by its mean over the runs of the variant, so that these
-/// runs share a point. The mean includes only runs that have a y.
+/// Replaces x, a measure of the whole run, by the mean of x over the runs of the variant, so that
+/// all these runs are drawn as one point. The mean includes only runs that have a y.
 void average_x(std::vector<Curve>& curves) {
   std::map<std::string, std::vector<double>> found;  // x of each variant
   const auto for_each_sample = [&](const auto& visit) {
@@ -260,8 +260,8 @@ void average_x(std::vector<Curve>& curves) {
 // --- Group ---
 
 /// The curves of a panel. If PlotSpec::by is set, each value of `by` gets a curve. Otherwise each
-/// variant gets a curve. But in plots with panels, and in plots whose x is one number per run,
-/// variants that differ only in x or in the panel's parameter share a curve.
+/// variant gets a curve, with one exception: if PlotSpec::panel is set or x has one value per run,
+/// variants that differ only in the panel's parameter or in x share a curve.
 std::vector<Curve> curves_of(const PlotSpec& plot, std::span<const Selected> runs) {
   const bool by_variant =
       against(plot) != Against::number_of_run && plot.by.empty() && plot.panel.empty();
@@ -299,9 +299,9 @@ void set_titles(const PlotSpec& plot, const NameVariants& name, std::span<Curve>
 }
 
 /// Sets Curve::style to the first entry of PlotSpec::series that matches the curve. A curve gets no
-/// style if no entry matches it, or if the first entry that matches it is also the first entry that
-/// matches another curve. With PlotSpec::listed, styles are used only if PlotSpec::series contains
-/// every parameter in which the curves differ.
+/// style if no entry matches it, or if another curve has the same first matching entry. With
+/// PlotSpec::listed, styles are used only if PlotSpec::series contains every parameter in which the
+/// curves differ.
 void set_styles(const PlotSpec& plot, std::span<Curve> curves) {
   std::vector<json> keys;
   for (const Curve& curve : curves) keys.push_back(curve.key);
@@ -334,11 +334,11 @@ void set_look(const SeriesSpec& stated, std::string& colour, int& point) {
     point = curve_symbol(static_cast<std::size_t>(symbol) - 1);
 }
 
-/// The colours and symbols that the manifest states: first those of this plot, then those of the
-/// manifest's other plots. A colour is left out if a plot earlier in this order states it.
+/// The colours and symbols that are given in the manifest: first those of this plot, then those of
+/// the manifest's other plots. A colour is left out if it is given in a plot earlier in this order.
 std::vector<StatedLook> stated_looks(const PlotSpec& plot, const Plots& others) {
   std::vector<StatedLook> looks;
-  std::set<std::string> taken;  // colours that earlier plots state
+  std::set<std::string> taken;  // colours given in earlier plots
   const auto add = [&](const PlotSpec& from) {
     for (const SeriesSpec& one : from.series) {
       if (!one.column.empty()) continue;
@@ -610,9 +610,10 @@ void leave_out_symbol(const Curve& curve, Series& series) {
   series.join = curve.look.join;
 }
 
-/// A thin line or a cloud of points for each run. Only the first run of a curve has a title.
+/// A thin line or a cloud of points for each run, or for each seed if x has one value per run. Only
+/// the first line or cloud of a curve has a title.
 std::vector<Series> series_of_runs(const Panel& panel) {
-  const bool of_run = against(panel.plot) == Against::number_of_run;  // one line for each seed
+  const bool of_run = against(panel.plot) == Against::number_of_run;
   std::vector<Series> all;
   for (const Curve& curve : panel.curves) {
     std::map<std::uint64_t, std::vector<ChartPoint>> lines;
@@ -732,7 +733,8 @@ std::vector<BinColumn> bin_columns(const Panel& panel, std::span<const MeasureCo
   return all;
 }
 
-/// The table and chart of a plot of single runs: one row for each sample.
+/// The table and chart of a plot that draws each run separately. The table has one row for each
+/// checkpoint of each run.
 Table table_of_runs(const Panel& panel) {
   const PlotSpec& plot = panel.plot;
   Table table{.name = plot.name, .columns = {"variant", "seed"}};
@@ -852,8 +854,8 @@ Table draw(const Panel& panel) {
     Series series = series_of(curve);
     series.band = what != Against::number_of_run;
     if (what == Against::curve) leave_out_symbol(curve, series);
-    // If x is a number of the whole run, different points come from different runs, and
-    // Series::runs stays 0.
+    // If x has one value per run, different points come from different runs, and Series::runs
+    // stays 0.
     if (what != Against::number_of_run) series.runs = by_packing(runs_of(curve.traces)).size();
     for (std::size_t k = 0; k <= plot.drawn; ++k) {
       Series& drawn = table.chart.series.emplace_back(series);
@@ -1014,8 +1016,8 @@ FigureResult make_plot(const PlotSpec& plot, const Frame& frame, const NameVaria
   return result;
 }
 
-/// First and last cycle at which the parts need measures that a simulation computes. Empty if they
-/// need such measures at all cycles, or need no such measures.
+/// First and last cycle at which the parts need measures that a further simulation computes
+/// (ComputedFrom::simulation). Empty if such measures are needed at all cycles, or at none.
 std::optional<std::array<std::uint64_t, 2>> simulated_by(std::span<const Figure> parts) {
   std::optional<std::array<std::uint64_t, 2>> hull;
   for (const Figure& part : parts) {

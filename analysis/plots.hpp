@@ -67,7 +67,7 @@ struct PlotSpec {
   /// measure of the run is averaged over the runs of each variant. Ignored if y is a curve.
   std::string x = "cycle";
   std::string by = {};      ///< one curve per value of this parameter; if empty, one per variant
-  std::string figure = {};  ///< the figure to which the plot belongs; if empty, the figure `name`
+  std::string figure = {};  ///< name of the plot's figure; if empty, the name of the plot
   std::string panel = {};   ///< one panel for each value of this parameter
   Show show = Show::mean;
   LogAxes log = LogAxes::none;
@@ -130,8 +130,9 @@ std::vector<const FrameRun*> runs_of(const Items& items) {
   return runs;
 }
 
-/// Selects the runs and checkpoints that the plot draws. With PlotSpec::minus, a checkpoint needs a
-/// partner at the same cycle.
+/// Selects the runs and checkpoints that the plot draws. If PlotSpec::minus is set, a checkpoint is
+/// selected only if one of Selected::partners has a y at the same cycle. This condition does not
+/// apply if y has one value per run.
 PlotRuns selected_by(const PlotSpec& plot, std::span<const FrameRun> runs);
 
 /// Returns a swept key that has several values within one curve of these runs, so that the curve

@@ -101,7 +101,8 @@ MeasuredCurve curve_of(const std::vector<double>& x, const auto& y_of) {
   return curve;
 }
 
-/// Results as functions of one criterion; the other criteria do not change.
+/// Each curve is a result as a function of one criterion; the other criteria have their usual
+/// values.
 json sensitivity_of(const MeasureInput& input) {
   const GrainMeasures& grains = input.analysis->grains;
   const Checkpoint& checkpoint = *input.checkpoint;

@@ -37,7 +37,8 @@ inline constexpr const char* growth_cannot_be_decided =
     "critical sizes is near 1, the threshold of the claim";
 
 /// Returns the published amplitude that is nearest to `amplitude_rad`. The numbers published for
-/// this amplitude are also used for `amplitude_rad`; the supplement leaves this open.
+/// this amplitude are also used for `amplitude_rad`. The supplement does not say which numbers to
+/// use for other amplitudes.
 inline const PublishedAmplitude& published_nearest(double amplitude_rad) {
   return *std::ranges::min_element(published_amplitudes, {}, [&](const PublishedAmplitude& one) {
     return std::abs(one.amplitude_rad - amplitude_rad);

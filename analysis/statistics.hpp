@@ -38,9 +38,9 @@ using RunStatistic = std::function<double(std::span<const std::size_t>)>;
 /// or if fewer than half of the samples have a finite value.
 std::optional<double> bootstrap_error(std::size_t runs, const RunStatistic& statistic);
 
-/// Confidence level of intervals unless a level is given. A 90 % interval that lies within a margin
-/// is equivalent to two one-sided tests at 5 %: Schuirmann, J. Pharmacokinet. Biopharm. 15, 657
-/// (1987).
+/// Confidence level of intervals unless a level is given. To require that a 90 % interval lies
+/// between -margin and margin is equivalent to two one-sided tests at 5 %: Schuirmann,
+/// J. Pharmacokinet. Biopharm. 15, 657 (1987).
 inline constexpr double confidence_level = 0.9;
 
 /// Minimum number of runs, or of pairs of runs, for an estimate. [choice]

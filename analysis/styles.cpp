@@ -86,7 +86,7 @@ Look Looks::of(RunGroup curve, const json& key) const {
   std::vector<std::string> in_panel = keys;
   std::erase_if(in_panel, [&](const auto& name) { return std::ranges::count(shared_, name) > 0; });
   StatedLook stated;
-  bool single = false;  // whether only this curve of its panel has stated.colour
+  bool single = false;  // whether the StatedLook with stated.colour matches one curve per panel
   for (const StatedLook& one : stated_) {
     std::set<json> curves, colours;
     for (const json& other : variants_) {
@@ -131,8 +131,8 @@ Look Looks::of(RunGroup curve, const json& key) const {
     const double amplitude = amplitude_of(one);
     return std::abs(published_nearest(amplitude).amplitude_rad - amplitude) < 1e-6;
   };
-  // Whether the palette contains the colour of the amplitude. Colours that the manifest states were
-  // removed from the palette.
+  // Whether the palette contains the colour of the amplitude. The palette no longer contains the
+  // colours that are given in the manifest.
   const auto has_own_colour = [&](const json& one) {
     return std::ranges::count(palette, amplitude_look(amplitude_of(one), 0).colour) > 0;
   };

@@ -37,7 +37,8 @@ inline constexpr std::size_t curve_symbols = 10;
 struct Look {
   std::string colour = {};  ///< "#rrggbb"
   int point = 0;            ///< like Series::point
-  /// How the curve is drawn without symbols. Line and dashes alternate among curves of one colour.
+  /// How the points are joined if the curve has no symbols. Among curves of one colour, solid lines
+  /// and dashes alternate.
   Join join = Join::line;
 };
 
@@ -64,10 +65,10 @@ struct AmplitudeRuns {
 std::vector<AmplitudeRuns> by_amplitude(std::span<const FrameRun> runs);
 
 /// Chooses the colour and symbol (Look) of each variant from the keys that vary in the frame. The
-/// rank of the first key's value decides the colour. The values of the other keys together have one
-/// rank, which decides the symbol. The amplitudes of the supplement have the colours of
-/// amplitude_look(). Colours and symbols of a StatedLook replace the chosen ones. A stated colour
-/// is not chosen for other variants.
+/// first of these keys decides the colour, by the rank of its value. The other keys decide the
+/// symbol, by the rank of their combination of values. The amplitudes of the supplement have the
+/// colours of amplitude_look(). Colours and symbols of a StatedLook replace the chosen ones. A
+/// stated colour is not chosen for other variants.
 class Looks {
  public:
   /// `shared`: keys that do not distinguish the curves of one panel. of() ignores them when it
@@ -79,9 +80,9 @@ class Looks {
   /// of this variant decide. Otherwise `key` decides: the values that all runs of the curve share.
   ///
   /// A StatedLook is used under two conditions: the curve has the parameter values in
-  /// StatedLook::where, and in all variants with these values the parameter that decides the colour
-  /// is the same. The curve then has the stated colour. It also has the stated symbol,
-  /// unless other curves of the panel have the values in StatedLook::where, too.
+  /// StatedLook::where, and the parameter that decides the colour has the same value in all
+  /// variants with the values in StatedLook::where. The curve then has the stated colour. It also
+  /// has the stated symbol, unless StatedLook::where matches other curves of the panel, too.
   Look of(RunGroup curve, const nlohmann::json& key) const;
 
  private:

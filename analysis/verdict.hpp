@@ -55,8 +55,9 @@ struct Verdict {
   std::optional<double> estimate;  ///< empty if too few runs have a value
   Interval interval;               ///< undefined without an estimate
   double level = confidence_level;
-  /// The event of a claim on waiting times; "" for other claims. With an event, `estimate`,
-  /// `interval` and `margin` are log2 of a ratio of waiting times (first group / second group).
+  /// The event of a claim on waiting times; "" for other claims. If the claim has an event,
+  /// then `estimate`, `interval` and `margin` are log2 of a ratio of waiting times (first group /
+  /// second group).
   std::string waits_for = {};
   double margin = 0;
   Ruling ruling = Ruling::undecided;
@@ -68,8 +69,8 @@ struct Verdict {
   std::size_t groups = 1;                  ///< Estimate::groups
   std::vector<std::size_t> looks = {};     ///< numbers of seeds at the planned interim analyses
   std::size_t look = 0;                    ///< number of seeds at the last look; 0: no look yet
-  /// Probability that the claim is decided at or before the next look, if `estimate` is the true
-  /// value. Empty if the claim is decided, or if only one look is planned.
+  /// Probability that a study decides the claim at the next look or at an earlier look, if
+  /// `estimate` is the true value. Empty if the claim is decided, or if only one look is planned.
   std::optional<double> power = {};
   std::string note;      ///< how the runs were compared, and which runs are missing
   bool primary = false;  ///< the runs were made to decide this claim
@@ -84,8 +85,8 @@ Ruling ruling_of(const Interval& interval, double margin, Relation claimed);
 /// claim has a reason why it cannot be decided, the verdict is undecidable, with this reason.
 /// `runs_needed`: for an undecided claim, the total number of runs (more than Estimate::runs) that
 /// decides the claim with 90 % probability. The true value is assumed to be 0 (Relation::same) or
-/// twice the margin (other relations). If this assumption gives at most Estimate::runs, or if the
-/// interval excludes 0, the true value is assumed to be the estimate instead.
+/// twice the margin (other relations). If no more than Estimate::runs runs would be needed under
+/// this assumption, or if the interval excludes 0, the estimate is taken as the true value instead.
 Verdict decide(const Claim& claim, std::string quantity, const std::optional<Estimate>& estimate,
                std::size_t runs, std::string note, Table entered = {},
                Counted counted = Counted::runs);
@@ -99,7 +100,7 @@ std::string headline_of(const std::map<Ruling, std::size_t>& rulings);
 /// Changes the ruling to `undecided`. The ruling `undecidable` is not changed.
 void withhold(Verdict& verdict);
 
-/// Joins the table Verdict::entered of each verdict into one table. The first column is the claim.
+/// Joins the tables Verdict::entered of all verdicts into one table. The first column is the claim.
 Table entered_table(std::span<const Verdict> verdicts);
 
 /// {"verdict", "claims": [{"id", "claim", "quantity", "estimate", "interval": [low, high], "level",

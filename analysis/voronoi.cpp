@@ -28,8 +28,8 @@ constexpr double smallest_face = 1e-13;         // [d^2]
 constexpr double coincidence_distance = 1e-10;  // closer sites coincide [d]
 // Images within this margin suffice in a dense packing. Other packings need a second pass.
 constexpr double first_margin_spacings = 2.1;
-// A circumcentre is computed in exact arithmetic if its error in doubles may exceed this value,
-// relative to the larger of 1 d and the circumradius.
+// Largest error allowed for a circumcentre computed in doubles, relative to the larger of 1 d and
+// the circumradius. If the error may be larger, the circumcentre is computed in exact arithmetic.
 constexpr double worst_centre_error = 1e-12;
 
 /// A site shifted by a whole number of periods in z. Image 0 is the site itself.
@@ -70,13 +70,13 @@ std::size_t corner_of(const Tetrahedron& t, std::int32_t vertex) {
 /// for rounding errors.
 ///
 /// A face is the polygon of the circumcentres around an edge, clipped by the walls. All faces that
-/// meet in a circumcentre use the same coordinates of the circumcentre and agree on whether it is
-/// inside a wall, so cells fit together without gaps. Polygon sides on a wall are the borders of
-/// the cells' faces on that wall.
+/// meet in a circumcentre use the same coordinates for the circumcentre. They also agree on whether
+/// the circumcentre lies beyond a wall. So the cells fit together without gaps. Polygon sides on a
+/// wall are the borders of the cells' faces on that wall.
 ///
 /// The guards are eight additional points at the corners of a large cube, so that every cell is
 /// bounded. They are farther away in z than any periodic image that a cell may need. So no cell
-/// that passes the test in measure() has a face with a guard.
+/// that passes the test in measure() borders on a guard.
 class Tessellation {
  public:
   Tessellation(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd& sites,
@@ -104,9 +104,9 @@ class Tessellation {
   /// Each corner of a cell is the centre of a sphere through the cell's site. The reach is the
   /// largest distance in z by which these spheres extend beyond [0, depth]. All cells are correct
   /// if the reach is at most the margin. More images can only make cells smaller, so a margin as
-  /// large as the present reach is sufficient. While images are missing, a cell can have a face
-  /// with a guard. The reach is then much too large. Therefore each pass at most doubles the
-  /// margin.
+  /// large as the present reach is sufficient. While images are missing, a cell can border on a
+  /// guard (see Tessellation). The reach is then much too large. Therefore each pass at most
+  /// doubles the margin.
   VoronoiDiagram measure() {
     while (true) {
       reach_ = 0;

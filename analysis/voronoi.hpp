@@ -36,8 +36,8 @@ struct VoronoiDiagram {
 };
 
 /// Computes the cells of `grains` (3 x n [d], z unwrapped and periodic with cell.depth) inside the
-/// walls at `pose`. Wall grains have cells, too, which are not returned. Without wall grains, the
-/// volumes of the cells add up to the volume of the sheared box.
+/// walls at `pose`. Wall grains also have cells, but these are not returned. If there are no wall
+/// grains, the volumes of the cells add up to the volume of the sheared box.
 ///
 /// The cells are dual to CGAL's Delaunay triangulation of the sites and their periodic images:
 /// faces are polygons of circumcentres, clipped by the walls. The faces of a grain are in ascending
