@@ -39,8 +39,8 @@ Geometry geometry(const Parameters& parameters);
 double shear_time_step_s(const Parameters& parameters);
 
 /// Largest stable time step of the leapfrog [s], 2/omega_max. omega_max^2 = 8 k/m belongs to the
-/// fastest mode of an FCC contact network (twelve springs per grain, longitudinal, at the zone
-/// boundary X). FCC is the densest network; looser or disordered packings vibrate more slowly.
+/// fastest mode (longitudinal, at the zone boundary X) of an FCC contact network with twelve
+/// springs per grain. Looser or disordered packings vibrate more slowly than FCC, the densest one.
 double stability_limit_s(const Parameters& parameters);
 
 /// Whether pressure_at has an effect: only if the bottom wall moves and the grains have weight.

@@ -573,9 +573,9 @@ std::vector<std::pair<string, const Placed<Spec>*>> stated_in(
 }
 
 /// Reports each entry of `primary` that is neither the id of a claim nor, as in older manifests,
-/// the statement of a claim. Claims of all scales count. An id can end in `@` and a value of
-/// `for_each`. This value is not checked for claims of computed figures and for claims over the
-/// runs of other experiments (`of`), because there the values do not follow from this manifest.
+/// the statement of a claim. Claims of all scales count. An id can have the ending `@VALUE`, where
+/// VALUE is a value of `for_each`. VALUE is not checked if the claim belongs to a computed figure
+/// or uses runs of other experiments (`of`), because VALUE then does not follow from this manifest.
 void check_primary(const Manifest& manifest, const std::vector<Scale>& scales,
                    ProblemList& problems) {
   std::set<string> ids, unchecked, statements;

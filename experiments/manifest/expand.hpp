@@ -25,11 +25,12 @@ struct ExpandOptions {
   /// Only variants with these values, for example "fluid=cell". Empty: all variants.
   std::vector<std::string> variants = {};
   std::vector<std::uint64_t> only_seeds = {};  ///< only runs with these seeds; empty: all runs
-  /// Replaces the manifest's `engine`. If the engines differ, `engine` becomes a swept key.
+  /// Replaces the manifest's `engine`. If this changes the engine, `engine` becomes a swept key.
   std::optional<std::string> engine = {};
   /// Stages in the store, and stages of manifests that stand before this manifest in the same
   /// command. The stages record how many cycles earlier commands requested. Warnings assume the
-  /// largest number that any command, also this one, requested with this version of the manifest.
+  /// largest number of cycles that any command, including this one, requested with this version of
+  /// the manifest.
   std::span<const Stage> known = {};
 };
 

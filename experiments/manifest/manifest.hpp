@@ -62,7 +62,7 @@ class ProblemList {
 
   std::size_t size() const { return problems_.size(); }
 
-  /// Throws ManifestError if a problem was added. It lists the problems in the order of the text.
+  /// Throws ManifestError if a problem was added. The error lists the problems by position.
   void raise() const;
 
  private:
@@ -221,8 +221,8 @@ inline constexpr std::size_t kLongestName = 64;
 /// letters, digits, '-' and '_', not beginning with '-'.
 bool is_name(std::string_view text);
 
-/// Whether the text can be the id of a claim: names (is_name()) joined by dots, at most
-/// kLongestName bytes.
+/// Whether the text can be the id of a claim: names (is_name()) joined by dots. The whole
+/// id has at most kLongestName bytes.
 bool is_claim_id(std::string_view text);
 
 /// The bytes of a file, at most `limit` + 1 of them. Throws ManifestError.

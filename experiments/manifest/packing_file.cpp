@@ -42,7 +42,7 @@ struct Meaning {
   /// next two.
   string_view names = {};
   int first = kQuantities;  ///< first quantity of the column; kQuantities: unknown
-  int count = 1;            ///< number of values in the column
+  int count = 1;            ///< number of values of the column in each row
   double factor = 1;        ///< 2 for radii
   enum { listed, second_best, probable } rank = listed;
   std::optional<LengthUnit> unit = {};  ///< unit given in the column's name
@@ -62,13 +62,13 @@ constexpr Meaning kMeanings[] = {{"x y z", kX},
 
 struct Column {
   string_view name;  ///< "" for a column without a name
-  int count = 1;     ///< number of values
+  int count = 1;     ///< number of values of the column in each row
 };
 
 struct GrainTable {
   string_view header = {};  ///< the line with the names of the columns
   std::vector<Column> columns = {};
-  const char* more = nullptr;  ///< what additional values in a row mean; null: they are an error
+  const char* more = nullptr;  ///< name of values after the last column; null: they are an error
   char separator = ' ';        ///< ' ' means any number of blanks and tabs
   double first_wall = 1;       ///< a row is a wall grain if its value of kWall is at least this
   std::vector<string_view> rows = {};
@@ -81,7 +81,7 @@ struct Section {
 };
 
 struct Box {
-  string_view line;            ///< some text from the last line that was read for the box
+  string_view line;            ///< the last line that was read for the box, or a part of this line
   Eigen::AlignedBox3d planes;  ///< empty along axes without bounds
   double lean = 0;             ///< largest off-axis component of an edge; 0 if orthogonal
 };
@@ -140,10 +140,12 @@ std::optional<LengthUnit> unit_of(string_view name) {
 
 /// `units`: whether a name in kMeanings may end in a unit, as in x_m. A name that is not in
 /// kMeanings may still be recognized as a diameter, a position or a velocity. Such a diameter is
-/// compared with the diameter of the run. Such a position or velocity is refused. (Earlier versions
-/// ignored such velocities. If this version read them, a file would give another packing than
-/// before, with the same id.) Earlier versions also ignored columns such as x_mm or "x [m]". For
-/// the same reason, these columns are read only if the file has none of the columns x, x_m and x_d.
+/// compared with the diameter of the run. Such a position or velocity is refused.
+///
+/// A file must give the same packing in all versions of this program, because the packing's id does
+/// not change. Earlier versions ignored such velocities; therefore they are refused and not read.
+/// Earlier versions also ignored columns such as x_mm or "x [m]"; therefore such columns are read
+/// only if the file has none of the columns x, x_m and x_d.
 Meaning meaning_of(const Column& column, bool units) {
   static const std::regex with_unit(
       "(.+?)([ _]|[ _]*[\\[(])(d|[mcu]?m|\u00b5m|\u03bcm)(_per_s|/s)?[\\])]?");

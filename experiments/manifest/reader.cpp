@@ -49,7 +49,7 @@ using Names = std::vector<string_view>;
 constexpr std::size_t kLongestLabel = 120, kLongestPath = 1000;  // [bytes]
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr Range kCycles = {0, StoreLimits::cycles};
-// A double represents every whole number up to this one exactly.
+// A double represents exactly every whole number up to this one.
 constexpr std::uint64_t kLargestSeed = (std::uint64_t{1} << 53) - 1;
 
 template <class... More>
@@ -820,7 +820,7 @@ struct Reader {
   void read(const Node& in, const Field& about, std::vector<T>& values) {
     values.clear();  // a scale starts with a copy of the top level's list
     Field item = with_type<T>(about);
-    // The example of an item is that of its list without the brackets. A number has no example.
+    // The item's example is the list's example without the brackets. A number has no example.
     item.example = item.example.substr(1, std::is_arithmetic_v<T> ? 0 : item.example.size() - 2);
     for (const Node& each : items_of(in, about.example)) read(each, item, values.emplace_back());
   }

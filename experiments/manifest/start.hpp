@@ -18,8 +18,8 @@
 namespace shearcell {
 
 /// Returns the run in `known` from which the variant starts. If several runs fit the key `start`,
-/// selects the run that has the variant's value of each key that is swept both in `manifest` and
-/// in the run's experiment.
+/// selects the run that has the same swept values as the variant. Only the keys that are swept both
+/// in `manifest` and in the run's experiment are compared.
 /// Throws ManifestError if no run or several runs remain, if the run has no checkpoint at the start
 /// cycle, or if the cell or the grains of the run differ from those of the variant.
 const Stage& recorded_run(const Manifest& manifest, const Scale& scale, const Variant& variant,
@@ -40,7 +40,7 @@ struct PlacedGrains {
   Cell cell;
   State state;               ///< at step 0; the moving wall is at rest
   std::string read;          ///< what was read; see describe()
-  std::string warning = {};  ///< if the cell has room for more grains
+  std::string warning = {};  ///< message if the cell has room for more grains; otherwise empty
 };
 
 /// Places the grains of the file in the cell that `parameters` define. `seed` decides the positions

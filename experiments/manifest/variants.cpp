@@ -91,7 +91,8 @@ std::string name_of_variant(const json& variant, const std::vector<std::string>&
 
 using Parts = std::set<std::pair<std::string, json>>;
 
-/// The parts of a list: {"a", 1} and {"b", 2} for "b=2,a=1.0". A text without `=` has no value.
+/// The parts of a list, sorted by key: "b=2,a=1.0" gives {"a", 1} and {"b", 2}. A part without `=`
+/// has the value "".
 Parts parts_of(const std::string& list) {
   Parts parts;
   std::istringstream text(list);

@@ -17,7 +17,7 @@
 
 namespace shearcell {
 
-/// The value of a parameter at this scale, which must not sweep the parameter. May be "auto".
+/// The value of a parameter at this scale; can be "auto". The scale must not sweep the parameter.
 nlohmann::json value_at(const Scale& scale, std::string_view key);
 
 /// A combination of swept values, with the parameters that result from it.
@@ -44,15 +44,15 @@ class Filter {
   explicit Filter(const std::vector<std::string>& wanted);
   explicit Filter(const std::vector<std::uint64_t>& wanted);
 
-  /// Whether the texts select the value. `name`: the display name of the value; its parts are added
-  /// to those of `value`. If several texts have the same keys, the value must fit at least one of
-  /// these texts: "a=1", "a=2" and "b=3" select values with b=3 that also have a=1 or a=2. Without
-  /// texts, every value is selected.
+  /// Whether the texts select `value`. A text may also use parts of `name`, the display name of
+  /// `value`. If several texts have the same keys, `value` must fit at least one of these texts:
+  /// "a=1", "a=2" and "b=3" select values with b=3 that also have a=1 or a=2. Without texts, every
+  /// value is selected.
   bool passes(const std::string& value, const std::string& name = "");
   /// The first of the given texts that selects none of the values in seen(), or null.
   const std::string* unfound() const;
-  /// The values that passes() was called with, each once, in the order of the calls. A display name
-  /// follows its value if the name has parts that the value lacks.
+  /// The values that passes() was called with, each once, in the order of the calls. If a display
+  /// name has parts that its value lacks, the name is a further entry after the value.
   const std::vector<std::string>& seen() const { return seen_; }
 
  private:
