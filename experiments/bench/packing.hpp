@@ -18,7 +18,7 @@ struct Packing {
 };
 
 /// Makes loose grains and presses them together without gravity. The packing is dense but not at
-/// rest, and its step is 0. Packing::scene is the scene of the shear. Throws GeometryError.
+/// rest, and its step is 0. Packing::scene is shear_scene(parameters). Throws GeometryError.
 Packing pressed_packing(const Parameters& parameters, std::uint64_t seed);
 
 Simulation simulate(const Packing& packing, const SimulationSettings& settings = {});

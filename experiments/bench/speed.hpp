@@ -32,17 +32,16 @@ struct SpeedResult {
   std::string simd = {};
   std::size_t threads = 1;
   double median_rate = 0, slowest_rate = 0, fastest_rate = 0;
-  /// Fractions of the time. wall_share: contacts with wall planes, and contacts with grains of the
-  /// moving wall. force_share: all other contacts. No fraction includes the drive, the wall
+  /// Fractions of the total time. wall_share: contacts with wall planes, and contacts with grains
+  /// of the moving wall. force_share: all other contacts. No fraction includes the drive, the wall
   /// movement, the sorting and the watchdog.
   double force_share = 0, integration_share = 0, wall_share = 0;
   double search_share = 0, prune_share = 0;  ///< search of outer lists, pruning of inner lists
   double steps_per_search = 0, steps_per_prune = 0;
   double bytes_per_grain = 0;
   double multiplications = 0;  ///< per particle-step
-  /// Rate that a kernel would reach if the multiplication units were never idle. The value for one
-  /// core is multiplied by the number of threads. A kernel with the same number of multiplications
-  /// per particle-step cannot be faster.
+  /// Upper limit of the rate for this value of `multiplications`: the rate if the processor's
+  /// multiplication units were never idle. The limit for one core is multiplied by `threads`.
   double limit = 0;
   std::string state_hash = {};  ///< hash after 200 steps; equal for all results of one size
 };
@@ -50,8 +49,8 @@ struct SpeedResult {
 /// Measures the speed for each size, kernel and number of threads. The cell has rough walls, the
 /// parameters of Table I and A = 0.0833. The packing is first pressed together. For N > 18200 a
 /// smaller packing is repeated along the depth; SpeedResult::grains includes all copies.
-/// Throws std::runtime_error if kernels give different states after 200 steps. The fractions of the
-/// time in SpeedResult are always measured with one thread.
+/// Throws std::runtime_error if kernels give different states after 200 steps. The fractions in
+/// SpeedResult (force_share to prune_share) are always measured with one thread.
 std::vector<SpeedResult> measure_speed(const SpeedOptions& options);
 
 }  // namespace shearcell::bench

@@ -140,7 +140,7 @@ void require_slurm() {
 std::string queue_job(const Job& job, const fs::path& folder) {
   static const std::regex number(R"(\s*(\d+)(;\S+)?\s*)");  // the cluster's name may follow
   write_output(folder / job.file, job.script);
-  // No time limit: a slow sbatch could still queue the job after this program has given up.
+  // No time limit: if a slow sbatch were killed, it could already have queued the job.
   const ProgramOutcome sbatch = run_program(job.command, folder, kRemoved).value();
   std::vector<std::string> numbers;
   std::istringstream lines(sbatch.output);

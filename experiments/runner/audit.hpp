@@ -40,10 +40,11 @@ struct MeasureCheck {
   std::vector<Finding> findings = {};  ///< errors
 };
 
-/// Recomputes measures of `count` sampled checkpoints of `store` and compares them with those in
-/// folder/derived.sqlite. The relative tolerance is 1e-9, because mathematical libraries differ in
-/// the last bits. For all pruned checkpoints, compares the digests of the measures in
-/// folder/derived.sqlite with the digests in the log of the store `folder`.
+/// Checks the cached measures in folder/derived.sqlite. `folder` is the folder of `store`, or of
+/// another store that was merged into `store`. Recomputes measures of `count` sampled checkpoints
+/// of `store` and compares them with the cached ones. The relative tolerance is 1e-9, because
+/// mathematical libraries differ in the last bits. For all pruned checkpoints of the store in
+/// `folder`, compares the digests of the cached measures with the digests in the log of that store.
 MeasureCheck check_measures(const Store& store, const std::filesystem::path& folder,
                             std::size_t count, std::uint64_t seed);
 

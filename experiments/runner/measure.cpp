@@ -147,9 +147,9 @@ class Measuring {
       }
       const CheckpointRecord* other = sources_.earlier(record, *providers_[p], task.every);
       if (other != nullptr) outcome_.earlier.insert(other->sha256);
-      // If the log has digests of other results of this checkpoint, but no digest of this result,
-      // the cached result is used only if the checkpoint is not pruned: without the checkpoint's
-      // file, nothing can confirm the result.
+      // is_as_pruned() is empty if the log has digests for this checkpoint, but not for this
+      // result. Such a result is not used if the checkpoint is pruned, because nothing can confirm
+      // the result without the checkpoint's file.
       if (!found[p] ||
           !sources_.is_as_pruned(record, {task.keys[p], *found[p]}).value_or(!is_pruned)) {
         continue;
@@ -212,9 +212,9 @@ class Measuring {
   std::vector<const Provider*> providers_;  // the requested providers, then MeasureOptions::also
   std::size_t wanted_ = 0;                  // number of requested providers (without `also`)
   std::vector<Task> tasks_;                 // the results of a task are written by one thread
-  std::vector<DerivedKey> keys_;            // for each task, one for each provider
-  std::vector<std::size_t> place_;          // for each checkpoint, its index in tasks_
-  std::mutex mutex_;                        // guards the members below while threads run
+  std::vector<DerivedKey> keys_;    // one per provider for tasks_[0], then for tasks_[1], ...
+  std::vector<std::size_t> place_;  // for each checkpoint, its index in tasks_
+  std::mutex mutex_;                // guards the members below while threads run
   DerivedCache cache_;
   std::vector<DerivedObject> pending_;
   MeasureOutcome outcome_;

@@ -61,13 +61,13 @@ struct ToMeasure {
 /// Results are cached under the checkpoint's recorded SHA-256. If all results of a checkpoint are
 /// cached, its file is not read and may be missing. Throws StoreDamaged, with a remedy, if a cached
 /// result is invalid. For a pruned checkpoint, also throws StoreDamaged if the cache is damaged or
-/// belongs to another program, and MachineError if the machine cannot read the cache.
+/// is another program's database, and MachineError if the machine cannot read the cache.
 MeasureOutcome measure_checkpoints(const Store& store, std::span<const ToMeasure> checkpoints,
                                    std::span<const std::string> providers,
                                    const MeasureOptions& options);
 
-/// Analyses a stored checkpoint. If the state cannot be analysed, throws StoreDamaged, with the
-/// checkpoint and the run: the file must be damaged, since this program records no such state.
+/// Analyses a stored checkpoint. If the state cannot be analysed, throws StoreDamaged, which names
+/// the checkpoint and the run. This program records no such state, so the file must be damaged.
 Analysis analyse_stored(const CheckpointRecord& record, const Checkpoint& checkpoint);
 
 /// Calls work(0) .. work(count - 1), at most `workers` at once. Collects the messages of

@@ -37,7 +37,7 @@ struct Outlook {
   /// The cycle at which the stage ends: the largest number of cycles that experiments ask for, or
   /// an earlier cycle at which `until` is known to end the stage.
   double end = 0;
-  /// Whether the stage may end before `end`: an `until` was not reached yet, but still may be.
+  /// Whether the stage may end before `end`: an `until` was not reached yet, but may be reached.
   bool may_end_early = false;
   /// Null, or how an `until` ended the stage at its last checkpoint, in the form of the event
   /// RunCompleted: {"by": "until", "measure", "value", "extra_cycles", "reached_at_cycle",
@@ -57,9 +57,10 @@ struct Outlook {
 /// Finds what remains to be computed of a recorded or a new stage. `asks`: the requests of
 /// experiments, which may differ from the recorded requests in `stage`. `checkpoints`: all
 /// checkpoints of the stage except rejected ones, by step (Listed::and_pruned). Let A be a request
-/// with an `until`. A completed stage needs no more cycles for A if a recorded request has the same
-/// `until` as A, at least as many cycles, and a `checkpoint_every` that is a multiple of A's.
-/// Throws StoreDamaged if a request is invalid.
+/// with an `until`. A completed stage needs no more cycles for A if a recorded request cannot end
+/// the stage earlier than A would. Such a recorded request has the same `until` as A and at least
+/// as many cycles. Its `checkpoint_every` is a multiple of A's `checkpoint_every`, so it tests
+/// `until` only at cycles at which A tests it. Throws StoreDamaged if a request is invalid.
 Outlook outlook(const Stage& stage, std::span<const Ask> asks,
                 std::span<const CheckpointRecord> checkpoints, const KnownMeasures& measures = {});
 
@@ -102,7 +103,7 @@ Outlook look_at(const Store& store, const Stage& stage);
 struct PlannedStage {
   const PlannedRun* run = nullptr;  ///< the first run with this stage
   Stage stage = {};
-  std::vector<Membership> memberships = {};  ///< in the store and in all plans
+  std::vector<Membership> memberships = {};  ///< those of the store, then those of the plans
   std::vector<CheckpointRecord> checkpoints = {};
   Outlook look = {};
 };
@@ -123,15 +124,15 @@ Outlook measured_outlook(const Store& store, const Stage& stage, std::span<const
 double end_for(const Store& store, const Stage& stage, const Ask& ask,
                const MeasureOptions& options);
 
-/// The checkpoints that `asks` request, including pruned ones. Each request counts only up to its
-/// own end_for().
+/// The checkpoints that `asks` request, including pruned ones. A request includes no checkpoint
+/// after its own end_for().
 std::vector<CheckpointRecord> checkpoints_for(const Store& store, const Stage& stage,
                                               std::span<const Ask> asks,
                                               const MeasureOptions& options = {});
 
-/// The recorded Outlook::ended if an `until` completed the stage before `target_cycles`; otherwise
-/// null. If another experiment made the stage continue after this `until` was fulfilled, the result
-/// also has "cycles_asked", the number of cycles that the other experiment asked for.
+/// The recorded Outlook::ended if the stage ended before `target_cycles` because of an `until`;
+/// otherwise null. If the stage ended later than this `until` requires, because another experiment
+/// asked for more cycles, the result also has "cycles_asked": the other experiment's target_cycles.
 nlohmann::json end_of(const Stage& stage);
 
 /// end_of() as text: "crystalline_percent >= 10 at cycle 25 and 15 more cycles"; "" for null.

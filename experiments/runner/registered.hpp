@@ -26,13 +26,13 @@ struct RegisteredManifest : ManifestText {
 
 /// Display names of the variants of each manifest (by variant_names()) and of settled packings. A
 /// packing is called "packing". If the packings of an experiment at one scale have different
-/// parameters, these are added: "packing N=600".
+/// parameters, the name also states the parameters that differ: "packing N=600".
 class VariantNames {
  public:
   using Labels = std::map<std::string, std::vector<VariantLabel>>;  ///< by SHA-256 of the manifest
   explicit VariantNames(const Store& store);
   VariantNames(const std::vector<Stage>& stages, const Labels& labels);
-  /// Display name of a stage in the experiment and scale of `place`; place.variant if unknown.
+  /// Display name of a stage in the experiment and scale of `place`; place.variant if it has none.
   std::string of(const Stage& stage, const Place& place) const;
 
  private:

@@ -475,7 +475,8 @@ class StageAttempt {
                          {"step", failure.step}});
       return StageOutcome::failed;
     } catch (const std::exception& failure) {
-      // The disk, memory or store failed. The start may be recorded even if start_stage() threw.
+      // The disk, memory or store failed. release() is called even if start_stage() threw, because
+      // start_stage() may have recorded the start of the attempt before it threw.
       release(failure);
       throw;
     }
@@ -486,8 +487,8 @@ class StageAttempt {
     try {
       store_.interrupt_stage(id(), failure.what());
     } catch (const std::exception&) {
-      // The end was not recorded. Another process can continue the run when this process's lease
-      // has expired.
+      // The end of the attempt could not be recorded. Another process can continue the run when
+      // this process's lease has expired.
     }
   }
 
@@ -513,15 +514,16 @@ class StageAttempt {
     return StageOutcome::interrupted;
   }
 
-  // Completes the stage and returns true if an `until` has ended the stage (Outlook::ended).
-  // Considers all experiments that use the stage, also those declared during the computation.
+  // If an `until` ends the stage now (Outlook::ended), records that the stage is completed and
+  // returns true. Considers all experiments that use the stage, also those declared during the
+  // computation.
   bool ends_early() {
     const Stage now = store_.stage(id());
     const std::vector<Ask> asks = asks_of(now.memberships);
     const auto lacks_until = [](const Ask& ask) { return ask.until.is_null(); };
     if (seen_.empty() || std::ranges::all_of(asks, lacks_until)) return false;
     const nlohmann::json ended = measured_outlook(store_, now, asks, seen_, measures_, {}).ended;
-    recorded_.restart();  // excludes the time of measuring from the recorded effort
+    recorded_.restart();  // the recorded effort excludes the time for measures
     if (!ended.is_null()) complete(ended);
     return !ended.is_null();
   }

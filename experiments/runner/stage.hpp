@@ -42,8 +42,8 @@ struct StageOptions {
 /// the newest valid checkpoint. Without one, starts from a state of the parent, or fills a new
 /// cell. If the starting state was pruned, its file is restored first. About every 50 ms,
 /// checks stop_requested() and whether this program still holds the stage. If a stop is requested
-/// while the cell is filled, nothing is recorded. These errors are thrown before anything is
-/// recorded: StoreDamaged if the starting state is damaged, or if the id is not the hash of the
+/// while the new cell is being filled, nothing is recorded. These errors are thrown before anything
+/// is recorded: StoreDamaged if the starting state is damaged, or if the id is not the hash of the
 /// recorded parameters; NotFound if the stage needs a starting_state(), but there is none;
 /// FilePruned if the starting state was pruned and cannot be recomputed; GeometryError if the cell
 /// cannot be filled; TooLittleMemory; ProgramError if the stage's engine is not installed.
@@ -58,13 +58,13 @@ bool is_done(const Store& store, const Stage& stage);
 std::optional<CheckpointRecord> starting_state(const Store& store, const Stage& stage,
                                                const Parameters& parameters);
 
-/// Where a recomputed state differs from the recorded one.
+/// Where a recomputed checkpoint differs from the recorded checkpoint.
 struct Divergence {
-  std::uint64_t same_step = 0;   ///< last step at which both states are known to be equal
-  std::uint64_t first_step = 0;  ///< first step at which both states are known to differ
-  /// What differs in the states: "position", "velocity", "wall_height" or "wall_velocity". If the
-  /// states are equal: "cycle", "time_s", "theta", the name of an observable, or "file". "" if
-  /// unknown.
+  std::uint64_t same_step = 0;   ///< last step at which the two computations are known to agree
+  std::uint64_t first_step = 0;  ///< first step at which a difference was found
+  /// The part that differs. If the states differ: "position", "velocity", "wall_height" or
+  /// "wall_velocity". If the states are equal: "cycle", "time_s", "theta", the name of an
+  /// observable, or "file" (the bytes of the file). "" if unknown.
   std::string field;
   std::int64_t grain = -1;
   std::uint64_t ulp = 0;  ///< largest difference in `field` [units in the last place]
