@@ -21,7 +21,7 @@ constexpr double kRoughLayer = 0.175;
 constexpr std::uint32_t kFillStream = 4;  // streams 0 to 3 belong to the wall sides
 
 // Random stream of a wall side. Draw 0 (Geometry::wall_grain_draw) uses the streams 0 to 3, draw 1
-// the streams 5 to 8, draw 2 the streams 10 to 13, and so on.
+// the streams 5 to 8, draw 2 the streams 10 to 13, and so on. Streams 9, 14, ... are not used.
 std::uint32_t wall_stream(WallSide side, std::uint32_t draw) {
   return static_cast<std::uint32_t>(side) + (kFillStream + 1) * draw;
 }

@@ -150,7 +150,7 @@ struct Kernels {
   const char* name;
   std::size_t lanes;
   double (*step)(const StepTask&, std::size_t first_block, std::size_t last_block);
-  /// Returns the length of the longest list before lists longer than the stride are truncated.
+  /// Truncates lists to `stride` entries. Returns the largest list length before the truncation.
   std::size_t (*search)(const SearchTask&, std::size_t first_place, std::size_t last_place);
   /// Returns false if a block needs more than inner_stride slots. The inner lists are then invalid.
   bool (*prune)(const PruneTask&, std::size_t first_block, std::size_t last_block);

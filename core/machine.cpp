@@ -39,7 +39,8 @@ double number_in(std::istream& file) {
   return file >> number ? number : std::nan("");
 }
 
-/// Limit on the number of cores, as set by `docker run --cpus`: processor time per period.
+/// Limit on the number of cores, as set by `docker run --cpus`: the processor time allowed in each
+/// period, divided by the length of the period.
 double cores_in(std::istream& file) {
   const double time = number_in(file), period = number_in(file);
   return time / period;

@@ -40,7 +40,7 @@ struct ListSettings {
 /// Two grains that are not listed as neighbours were at least 1 + m_i + m_j apart, where m_i and
 /// m_j are their margins. They cannot touch until one of them has moved in this frame by more than
 /// its margin minus margin_loss(). So the movement of each grain is compared with its own margin
-/// only, and wide margins of fast grains do not lengthen the lists of slow grains.
+/// only. The wide margin of a fast grain adds only pairs that contain this grain to the lists.
 class Reference {
  public:
   /// Stores the present positions and the present pose. `widest` is the largest margin [d].
@@ -50,7 +50,8 @@ class Reference {
   double moved(const double* rows, std::size_t grain, const WallPose& pose) const;
   /// Upper bound of moved() [d] for all wall grains and wall planes.
   double wall_moved(const WallPose& pose) const;
-  /// Part of each margin [d] that the shear since set() and the rounding of positions use up.
+  /// Part of each margin [d] that is used up by the shear since set() and by the rounding of
+  /// positions.
   double margin_loss(double tan_theta) const;
 
   /// Height [d] of the top wall at set(). At this height, the frame that moves with the shear has

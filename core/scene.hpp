@@ -30,7 +30,7 @@ constexpr double fluid_share(Fluid fluid) {
 /// The wall on which the pressure is P. `moving_wall`: the load on the moving wall is P A_w. A
 /// moving bottom wall also carries the weight of the grains, so the pressure on the top wall is
 /// below P. `top`: the load on a moving bottom wall is P A_w plus the weight of the grains. The
-/// pressure on the top wall is then P, minus the share of the load that rough side walls carry.
+/// pressure on the top wall is then P, or less if rough side walls carry a part of the load.
 enum class PressureAt : std::uint8_t { moving_wall, top };
 template <>
 inline constexpr auto kNames<PressureAt> = names_in_order<PressureAt>("moving_wall", "top");

@@ -102,7 +102,8 @@ HWY_INLINE void add_contacts(Vectors& sum, const Vectors& own, const double* HWY
     }
   }
   if (slots == 0) return;
-  // Before a slot is added, the next slot is loaded, so that no addition waits for memory.
+  // Each slot is loaded before the previous slot is added to `sum`, so that no addition waits for
+  // memory.
   Vectors dr = load_slot<kSeam>(own, rows, list, depth, per_depth);
   for (; slots > 1; --slots) {
     list += kLanes;

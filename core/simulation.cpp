@@ -312,8 +312,8 @@ void Simulation::rebuild_lists(const Drive& drive) {
   const bool stale = counts_.builds < 2 || step_ - sorted_at_ >= 200;
   if (settings_.lists.sort_memory && stale) sort_memory();
   lists_.build(snapshot(drive), id_, order_);
-  // Both buffers need the padding row and the rows of all wall grains. They are copied here,
-  // because Walls::place() later writes only the rows of the active wall grains.
+  // Both buffers need the padding row and the rows of all wall grains. These rows are copied
+  // here, because Walls::place() later writes only the rows of the active wall grains.
   std::copy(rows_[0].begin() + padding_offset(id_.size()), rows_[0].end(),
             rows_[1].begin() + padding_offset(id_.size()));
   ++counts_.builds;

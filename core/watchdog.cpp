@@ -49,7 +49,7 @@ double largest_overlap(const WatchTask& task, std::size_t g) {
   return 1 - std::sqrt(nearest);
 }
 
-// Weights w in the bound of a grain, and factor 5 in the bound of the moving wall (watchdog.hpp).
+// The weights w (first three) and the factor 5 in the bounds on omega^2 (see watchdog.hpp).
 constexpr double kOfGrain = 2, kOfFixedWall = 1, kOfMovingWall = 1.25, kOnMovingWall = 5;
 
 // Calls visit(unit normal, weight w, moving) for every contact of grain g. `moving` says whether
@@ -74,14 +74,16 @@ void for_each_contact_of(const WatchTask& task, std::size_t g, Visit&& visit) {
   }
 }
 
-// Largest bound of omega^2 in units of k/m, and the id of its grain (-1: the moving wall).
+// Largest bound on omega^2 in units of k/m, and the id of the grain with this bound (-1: the moving
+// wall).
 struct Fastest {
   double bound = 0;
   std::int64_t grain = -1;
 };
 
-// Bounds omega^2 of grain g. If the bound exceeds `least` and `fastest.bound`, updates `fastest`.
-// Cheaper estimates exclude nearly all grains before the eigenvalues are computed.
+// Computes the bound on omega^2 for grain g. If the bound exceeds `least` and `fastest.bound`,
+// updates `fastest`. Cheaper estimates exclude nearly all grains before the eigenvalues are
+// computed.
 void bound_grain(const WatchTask& task, std::size_t g, double least, Fastest& fastest) {
   const std::size_t block = g / task.lanes;
   const auto slots = static_cast<double>(task.neighbours.moving_wall_slots[block] +
@@ -101,7 +103,7 @@ void bound_grain(const WatchTask& task, std::size_t g, double least, Fastest& fa
   if (bound > fastest.bound) fastest = {bound, task.id[g]};
 }
 
-// Stores the moving wall's bound of omega^2 in `fastest` if it exceeds `least` and `fastest.bound`.
+// Stores the moving wall's bound on omega^2 in `fastest` if it exceeds `least` and `fastest.bound`.
 void bound_wall(const WatchTask& task, double least, Fastest& fastest) {
   const double each = kOnMovingWall / (task.scene.wall_mass * task.cell.width * task.cell.depth);
   std::vector<std::size_t> near;

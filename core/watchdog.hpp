@@ -15,7 +15,8 @@
 
 namespace shearcell {
 
-/// Thrown if a quantity exceeds its limit. what() gives both numbers and says what to change.
+/// Thrown if a quantity exceeds its limit. what() gives the value and the limit, and says what to
+/// change.
 class NumericalFailure : public std::runtime_error {
  public:
   NumericalFailure(std::string quantity, double value, double limit, std::int64_t grain,

@@ -10,8 +10,8 @@
 namespace shearcell {
 namespace {
 
-// A grain farther than this from a wall plane [d] does not touch the wall. Wall grains have
-// diameter 1, and their centres lie behind the plane.
+// Distance from a wall plane [d]. A grain that is farther away does not touch the wall, because
+// wall grains have diameter 1, and their centres lie behind the plane.
 constexpr double kWallReach = 2;
 
 // Positions of the grains that may touch a wall.

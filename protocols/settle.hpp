@@ -46,7 +46,7 @@ class Settle {
   StageProgress advance(Simulation& simulation, std::uint64_t most_steps) const;
 
   /// Number of time steps in pressing_time(), rounded up to a multiple of the check interval. It is
-  /// at most the time limit, and 0 without pressure.
+  /// at most the number of steps in the time limit. Without pressure it is 0.
   std::uint64_t compaction_steps(const Cell& cell, std::size_t grains) const;
 
   /// Number of steps before gravity is switched on: compaction_steps(), or 0 for a scene without
@@ -57,7 +57,7 @@ class Settle {
   std::uint64_t next_check(std::uint64_t step) const;
 
  private:
-  /// Returns true if the simulation is at a check and the packing has settled. Throws
+  /// Returns true if the tolerances are checked at this step and the packing has settled. Throws
   /// NumericalFailure at the first check after the time limit.
   bool finished(const Simulation& simulation) const;
   bool settled(const Simulation& simulation) const;

@@ -73,7 +73,7 @@ std::optional<std::uint64_t> start_of(std::uint64_t pid) {
   // `fields` begins with the third field of the line.
   std::istringstream rest(line.substr(line.rfind(')') + 1));
   const std::vector<std::string> fields(std::istream_iterator<std::string>(rest), {});
-  constexpr std::size_t kState = 0, kStart = 19;  // fields 3 and 22 of the line
+  constexpr std::size_t kState = 0, kStart = 19;  // indices of fields 3 and 22 of the line
   if (fields.size() <= kStart) return std::nullopt;
   if (fields[kState] == "Z" || fields[kState] == "X") return 0;
   return std::stoull(fields[kStart]);

@@ -35,7 +35,7 @@ struct Maker {
 /// `host` is the JSON object that host_facts() returned.
 Maker maker_of(const nlohmann::json& host);
 
-/// One computation of a run by one program, from start to end.
+/// A period in which one program computed a run. Resuming the run begins a new attempt.
 struct Attempt {
   std::uint64_t seq = 0;   ///< seq of the event that began the attempt
   std::string started_at;  ///< UTC

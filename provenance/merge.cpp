@@ -29,7 +29,8 @@ using events::CheckpointRecorded;
 using sqlite::Database;
 using sqlite::Statement;
 
-/// A store to merge from: a snapshot of its log, after the hash chain and the events were checked.
+/// A store to merge from. `head` and `events` were read in one transaction. The hash chain and the
+/// events were checked.
 struct Source {
   std::filesystem::path folder;
   Head head;
@@ -51,8 +52,8 @@ void require_agreement(const Database& into, const std::string& name,
                        const std::vector<Source>& sources) {
   using Step = std::pair<std::string, std::uint64_t>;  // run and step
   using States = std::set<std::string>;
-  // Each entry ends with the name of a store: in `runs`, the first store that has the run; in
-  // `states`, the first store that has a state of the run at this step.
+  // Each value ends with the name of a store. In `runs`, it is the first store that has the run. In
+  // `states`, it is the first store that has a state of the key's run at the key's step.
   std::map<std::string, std::pair<Stage, std::string>> runs;
   std::map<Step, std::pair<States, std::string>> states;
   const auto compare = [&](const Database& tables, const std::string& store) {
@@ -84,7 +85,7 @@ void require_agreement(const Database& into, const std::string& name,
   for (const Source& source : sources) compare(source.tables, source.folder.string());
 }
 
-/// Whether `into` lacks the checkpoint, or has it only as a damaged file that `record` can replace.
+/// Whether `into` lacks the checkpoint, or has only a damaged file and the source has a valid file.
 /// If `into` has the same state in a file with other bytes (another HDF5 version), returns false.
 bool is_news(const Database& into, const CheckpointRecord& record) {
   Statement same(into,
@@ -127,8 +128,8 @@ struct RunMerge {
   std::optional<Event> last_claim;   ///< last event in the store that began or ended an attempt
   std::set<std::string> known;       ///< SHA-256 of checkpoints that are not new
   std::set<std::uint64_t> attempts;  ///< seq (in the source) of the events of copied attempts
-  /// Whether the run is not in the store, or is at a later step in the source, or is at the same
-  /// step and has a state there that is later in StageState.
+  /// Whether the source has a later step of the run than the store, or the same step and a state
+  /// that is later in StageState. True if the store does not have the run.
   bool source_wins = false;
 
   bool wants(const Database& into, const Event& event) const {
@@ -146,8 +147,8 @@ struct RunMerge {
     return !known.contains(text_at(event.body(), "sha256"));
   }
 
-  /// Returns `last_claim` if the copied events changed the state of the run. The caller then
-  /// appends this event again, which restores the state that the run had before the merge.
+  /// Returns the event `last_claim` if the copied events changed the state of the run. The caller
+  /// then appends `last_claim` again, which restores the state that the run had before the merge.
   std::optional<Event> closing_event(const Database& into) const {
     if (!before || source_wins || attempts.empty() || !last_claim) return std::nullopt;
     const StageState now = query_stage(into, before->id).value().state;

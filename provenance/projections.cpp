@@ -128,8 +128,8 @@ class Projector {
         "'declared', state), target_cycles = max(target_cycles, excluded.target_cycles)",
         id_, event_.seq, d.parent, d.kind, d.resolved.dump(), d.grains, ask.target_cycles,
         event_.recorded_at);
-    // If a declaration is repeated without a larger target or another checkpoint interval, it sets
-    // `ordinal`. This makes the run the last one of its place (see holds_place()).
+    // A repeated declaration with no larger target and the same checkpoint interval sets `ordinal`.
+    // This makes the run the last one of its place (see holds_place()).
     run("INSERT INTO memberships VALUES(?,?,?,?,?,?,?,?,?,?,?,?) ON CONFLICT DO UPDATE SET "
         "ordinal = iif(excluded.target_cycles <= target_cycles AND excluded.checkpoint_every = "
         "checkpoint_every, excluded.ordinal, ordinal), "
@@ -243,8 +243,8 @@ class Projector {
 
   /// Called after checkpoint `sha256` was recorded, rejected or regenerated. Sets cycle, step and
   /// state hash of the run to those of the run's last recorded checkpoint. Does nothing if the run
-  /// has reached a later step than that of checkpoint `sha256`. The checkpoint at the later step
-  /// has perhaps been pruned, and pruning must not set the run back.
+  /// has reached a later step than that of checkpoint `sha256`, so that the run is not set back if
+  /// the checkpoint at the later step has been pruned.
   void move_to_furthest_from(const std::string& sha256) const {
     run("UPDATE runs SET (cycle, step, state_hash) = (SELECT coalesce(max(cycle), 0), "
         "coalesce(max(step), 0), coalesce(max(state_hash), '') FROM (SELECT * FROM checkpoints "
@@ -262,7 +262,7 @@ StoreDamaged damaged_table(const Database& database, const std::string& why) {
   return StoreDamaged(fmt::format("{}: a derived table {}; run `rebuild`", database.name(), why));
 }
 
-/// The value of the JSON text in a table column.
+/// Parses JSON text from a table column. Throws StoreDamaged if the text is not valid.
 template <class T>
 T parse(const Database& database, const std::string& text) {
   try {

@@ -27,7 +27,8 @@ class Sha256 {
     (add_field(fields), ...);
     return *this;
   }
-  /// Adds the eight bytes of a number, least significant first. 0.0 and -0.0 have different bytes.
+  /// Adds the eight bytes of a number, least significant first. The doubles 0.0 and -0.0 have
+  /// different bytes.
   Sha256& add_u64(std::uint64_t value) { return add(std::as_bytes(std::span(&value, 1))); }
   Sha256& add_f64(double value) { return add_u64(std::bit_cast<std::uint64_t>(value)); }
   /// The digest of all added data. The object cannot be used afterwards.

@@ -58,8 +58,8 @@ class Database {
   const std::string& name() const { return name_; }
   sqlite3* handle() const { return handle_.get(); }
   /// Throws MachineError when the file was moved, replaced or deleted. Called before each
-  /// transaction, because a transaction may play back a journal, and another file at the same path
-  /// may have another journal.
+  /// transaction: if another file has replaced this one, SQLite could play back the journal of the
+  /// new file into the old file, which is still open.
   void require_in_place() const;
   /// Throws MachineError if the last system call of SQLite failed with EIO. SQLite itself reports
   /// such a read error as a damaged database.
@@ -101,7 +101,7 @@ class Statement {
   /// Runs a statement that returns no rows.
   void run();
 
-  // Values of the current row. SQLite converts values of another type. NULL becomes "" or 0.
+  // Values of the current row. SQLite converts them to the returned type. NULL becomes "" or 0.
   std::string text(int column) const;
   std::uint64_t u64(int column) const;
   double f64(int column) const;

@@ -114,13 +114,13 @@ class Store {
   void declare_stage(const Stage& stage);
 
   /// Starts an attempt and returns its number, from 1. If `from_sha256` is given, the attempt
-  /// continues from the run's checkpoint with this SHA-256. `parent_checkpoint`, the initial state,
-  /// is only recorded. `fill` is for a run that is already completed: the attempt records missing
-  /// checkpoints before the last one, and then completes the run again. Throws NotFound when the
-  /// run or the checkpoint is unknown. Throws ConcurrencyConflict in these cases: this object or
-  /// another program holds the run; `fill` is true, but the run is not completed; `fill` is false,
-  /// but the run is completed or has reached a later step than the step from which the attempt
-  /// starts.
+  /// continues from the run's checkpoint with this SHA-256. `parent_checkpoint`, the SHA-256 of
+  /// the initial state, is recorded but not checked. `fill` is for a run that is already completed:
+  /// the attempt records missing checkpoints before the last one, and then completes the run again.
+  /// Throws NotFound when the run or the checkpoint is unknown. Throws ConcurrencyConflict in these
+  /// cases: this object or another program holds the run; `fill` is true, but the run is not
+  /// completed; `fill` is false, but the run is completed or has reached a later step than the step
+  /// from which the attempt starts.
   std::uint64_t start_stage(const std::string& id, const nlohmann::json& host,
                             const std::optional<std::string>& from_sha256 = std::nullopt,
                             const std::string& parent_checkpoint = "", bool fill = false);
@@ -148,8 +148,8 @@ class Store {
   void reject_checkpoint(const std::string& id, const std::string& sha256, const std::string& why);
 
   /// The newest checkpoint before `before_step` that can be loaded. Missing and damaged
-  /// checkpoints are skipped. If `damage` is given, an error is added to it for each of them, and a
-  /// writable store marks them as rejected.
+  /// checkpoints are skipped. If `damage` is given, an error is added to it for each missing or
+  /// damaged checkpoint, and in a writable store these checkpoints are then marked as rejected.
   std::optional<LoadedCheckpoint> newest_valid_checkpoint(
       const std::string& id, std::vector<std::string>* damage = nullptr,
       std::uint64_t before_step = UINT64_MAX);
@@ -210,17 +210,18 @@ class Store {
   std::vector<CheckpointRecord> prunable(const PruneChoice& choice) const;
   /// Pruned checkpoints whose files still exist because of a crash.
   std::vector<CheckpointRecord> prune_leftovers() const;
-  /// Records the checkpoints as pruned, then deletes their files. Skips checkpoints that may no
-  /// longer be pruned. Returns the number of bytes freed.
+  /// Records the checkpoints as pruned, then deletes their files. Skips checkpoints that must
+  /// not be pruned any more because the store has changed. Returns the number of bytes freed.
   std::uint64_t prune(const std::vector<CheckpointRecord>& records, bool last_too = false);
   /// Stores a regenerated checkpoint. Throws StoreDamaged when its bytes differ from the record.
   void restore_checkpoint(const CheckpointRecord& record, const Checkpoint& checkpoint);
 
-  /// Merges other stores into this one (merge.cpp). If `runs` is not empty, merges only these runs,
-  /// all manifests and all files of grain positions. `runs` must then contain all parents, too.
-  /// Throws NotFound when a source is not a store, and MachineError while a process computes a run
-  /// of this store. Throws StoreDamaged, before anything is written, when a source is damaged, or
-  /// when two stores hold different states of one run at one step or different runs under one id.
+  /// Merges other stores into this one (merge.cpp). If `runs` is not empty, merges no other runs,
+  /// but still all manifests and all files of grain positions. `runs` must then also contain the
+  /// parents of its runs. Throws NotFound when a source is not a store, and MachineError while a
+  /// process computes a run of this store. Throws StoreDamaged before anything is written if a
+  /// source is damaged, or if two stores hold different states for the same step of a run or use
+  /// one id for different runs.
   std::vector<MergeReport> merge(const std::vector<std::filesystem::path>& sources,
                                  const std::set<std::string>& runs = {});
 
