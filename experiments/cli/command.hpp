@@ -87,7 +87,8 @@ bool is_stream(const std::string& out);
 void write_result(const std::string& out, const std::string& text);
 void add_json_option(CLI::App& command, Context& context);
 
-/// Adds a subcommand that calls run(options, context). The options exist as long as the parser.
+/// Adds a subcommand that calls run(options, context). The options exist until the parser is
+/// destroyed.
 template <class Options>
 auto add_command(CLI::App& app, Context& context, const char* name, const char* about,
                  void (*run)(Options&, Context&)) {
@@ -105,9 +106,9 @@ void add_expand_options(CLI::App& command, ExpandOptions& options);
 
 /// Reads and expands each manifest once. If the runs of manifest B start from runs of manifest A, A
 /// comes before B in the result. Passes all warnings to warn(). Also warns if a plan lacks runs
-/// that another version of its manifest has. That version is the newest in the store or comes
-/// earlier in the result. If `brief` is true and a manifest has more than three warnings, prints
-/// the first warning and counts the others.
+/// of the previous version of its manifest: the version of an earlier plan in the result or, if
+/// there is none, the newest version in the store. If `brief` is true and a manifest has more than
+/// three warnings, prints the first warning and counts the others.
 std::vector<Plan> load_plans(const std::vector<std::string>& paths, const ExpandOptions& options,
                              Context& context, bool brief = true);
 

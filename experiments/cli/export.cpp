@@ -239,8 +239,8 @@ void require_effect(const ExportOptions& options, const ExportFormat& format) {
   if (options.metres && options.format != "extxyz") refuse("--metres");
 }
 
-/// Returns the runs that the user named, with all their places. If the user named no run, returns
-/// newest_runs() of the selection. Each run occurs once.
+/// Returns the runs that the user named, each with all its places (see PlacedRun). If the user
+/// named no run, returns newest_runs() of the selection. Each run occurs once.
 std::vector<PlacedRun> wanted_runs(const Store& store, const ExportOptions& options) {
   parse_cycles(options.cycles);  // throws once here, instead of once for each run
   std::vector<PlacedRun> runs;

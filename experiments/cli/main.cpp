@@ -144,8 +144,8 @@ std::string describe_extras(const CLI::App& app) {
 void make_surroundings_usual() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (fcntl(stream, F_GETFD) != -1) continue;
-    // open() returns the lowest free descriptor, which is that of the closed stream. The
-    // access mode makes reads from standard input and writes to the other two streams fail.
+    // open() returns the lowest free descriptor, which is that of the closed stream. With
+    // this access mode, reading standard input fails, and so does writing to the other two streams.
     (void)!open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
   }
   std::signal(SIGCHLD, SIG_DFL);

@@ -178,8 +178,9 @@ void note_looks(const std::vector<Plan>& plans, const std::vector<Line>& lines, 
   }
 }
 
-// Estimates the particle-steps that are left if each `until` ends its runs at the mean cycle at
-// which it ended earlier runs. Null if no run has an `until`, or if some `until` was never reached.
+// Estimates the remaining particle-steps. Assumes that each `until` ends runs at the mean cycle at
+// which this `until` ended earlier runs. Null if no run may end early, or if some `until` of an
+// unfinished run has not ended any run yet.
 nlohmann::json left_until(const std::vector<Line>& lines, const std::vector<Stage>& known) {
   std::map<nlohmann::json, std::optional<double>>
       ends;  // `until` -> expected last cycle; cached, since expected_end() reads all runs

@@ -51,7 +51,7 @@ std::vector<CheckpointRecord> prunable(const PruneOptions& options, const Store&
     const std::set<std::string> ids = selected_ids(store, options.selection);
     if (choice.runs.empty()) choice.runs.assign(ids.begin(), ids.end());
     std::erase_if(choice.runs, [&](const std::string& id) { return !ids.contains(id); });
-    if (choice.runs.empty()) return {};  // Store::prunable() takes an empty list as all runs
+    if (choice.runs.empty()) return {};  // to Store::prunable(), an empty list means all runs
   }
   return store.prunable(choice);
 }

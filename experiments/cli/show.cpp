@@ -426,8 +426,8 @@ std::optional<FigureRecord> find_record(const Store& store, const std::string& n
   return std::move(found.begin()->second);
 }
 
-/// Throws NotFound if `name` is the name of an experiment, which `show` cannot show, or is similar
-/// to the name of an experiment or of a drawn figure.
+/// Throws NotFound if `name` is the name of an experiment, or is similar to the name of an
+/// experiment or of a drawn figure. (`show` cannot show experiments.)
 void require_no_name(const Store& store, const std::string& name,
                      const std::vector<Stage>& stages) {
   std::set<std::string> known;

@@ -151,7 +151,7 @@ Facts facts(const PlacedRun& listed, const Membership& shown, const View& view) 
 struct Estimate {
   std::string problem;  ///< why the work is unknown (a run cannot be read); "" if it is known
   Work work;
-  /// Number of stages computed at a time. If none is computed now, the number on all usable cores.
+  /// Number of stages computed at the same time. If none is computed now: one per usable core.
   std::size_t at_a_time = 1;
   bool running = false;  ///< whether a stage is computed now
   bool at_most = false;  ///< the time is an upper limit: `until` may end runs early

@@ -22,7 +22,8 @@ using nlohmann::json;
 
 // Slurm's default limit on the number of tasks of a job.
 constexpr std::size_t kMostTasks = 1000;
-// Slurm checks time limits only every 30 s, so its warning can be early by up to this time [s].
+// Slurm's warning can be early by up to this time [s]: Slurm checks time limits only every 30 s,
+// and warns at the last check before the warning is due.
 constexpr double kWarningResolution = 30;
 
 struct SubmitOptions {

@@ -18,7 +18,7 @@ namespace shearcell::cli {
 namespace {
 
 struct VerifyOptions {
-  std::vector<std::string> against;  ///< number and hash of an event
+  std::vector<std::string> against;  ///< two words: number and hash of an event
   std::size_t replay = 0;
   std::size_t measures = 8;
   std::optional<std::uint64_t> seed;

@@ -27,8 +27,9 @@ struct WantedFigure {
   /// The manifests of the store. All figures of one command share them, so that each manifest is
   /// read only once. If null, collect_runs() reads the manifests.
   ReadManifests manifests = {};
-  /// Names the version of this program if the program's own plots are used because the manifest
-  /// defines none for this figure (older manifests only list names of figures). Otherwise "".
+  /// A note with the version of this program if the program's own plots are used, else "". The
+  /// program's own plots are used if the manifest defines none for this figure. (Older manifests
+  /// only list names of figures.)
   std::string plots = {};
 
   /// "drag/S2", for messages.

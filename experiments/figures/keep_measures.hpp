@@ -17,9 +17,9 @@ namespace shearcell {
 ///
 /// On return, `records` lists the checkpoints whose files can be deleted. A checkpoint is removed
 /// from `records` if one of its measures could not be computed; the outcome gives the reason.
-/// Exception: if this measure needs an earlier checkpoint that is already pruned, keeping the file
-/// would not help, so the later checkpoint stays in `records`. If measures cannot be cached,
-/// `records` becomes empty. The cache is on disk when the function returns.
+/// Exception: a checkpoint stays in `records` if the measure also needs an earlier checkpoint that
+/// is already pruned, because then the measure can no longer be computed. If measures cannot be
+/// cached, `records` becomes empty. The cache is on disk when the function returns.
 MeasureOutcome keep_measures(const Store& store, std::vector<CheckpointRecord>& records,
                              const MeasureOptions& options);
 

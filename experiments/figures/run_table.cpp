@@ -28,8 +28,8 @@ using nlohmann::ordered_json;
 struct Row {
   const FrameRun* run = nullptr;
   const CheckpointMeasures* checkpoint = nullptr;  // null for a run that was not started
-  // Copy of the run with only the measured checkpoints at whole cycles, in which onsets are found.
-  // Null if the row shows no onsets.
+  // Onsets are computed from this copy of the run, which has only the measured checkpoints at whole
+  // cycles. Null if the row shows no onsets.
   const FrameRun* history = nullptr;
 };
 

@@ -167,7 +167,7 @@ NewestRuns newest_runs(std::vector<Run> selected) {
   chosen.runs.assign(selected.begin(), older);
   std::ranges::stable_sort(chosen.runs, in_order);
   note_shortened(chosen.runs, chosen.notes);
-  // Variants whose runs are left out, by experiment, scale and version of the manifest.
+  // For each experiment, scale and version of the manifest: the variants of left-out runs.
   std::map<std::pair<ExperimentScale, std::string>, std::vector<std::string>> left;
   for (const Run& one : std::ranges::subrange(older, selected.end())) {
     const auto instead = std::ranges::find_if(chosen.runs, [&](const Run& other) {

@@ -36,9 +36,9 @@ struct NewestRuns {
 };
 
 /// Returns the runs that figures and tables show. These are, for each experiment and scale, the
-/// runs of the last registered manifest version that has runs at this scale. Each seed of a variant
-/// is listed once, because counting a run twice would make errors too small. If several variants
-/// share a stage, each of these variants has a run with this stage. Settled packings are left out.
+/// runs of the last registered manifest version that has runs at this scale. Within a variant, each
+/// seed is listed once, because counting a run twice would make errors too small. But a stage that
+/// several variants share occurs in a run of each of these variants. Settled packings are left out.
 NewestRuns newest_runs(std::vector<Run> selected);
 
 /// The experiment, scale, variant and seed for which the stage was declared first. Empty if no

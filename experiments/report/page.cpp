@@ -326,7 +326,7 @@ json stages_step(const char* title, std::map<StageState, std::size_t>& in) {
 json workflow(const Content& content, const Experiment& experiment) {
   std::map<StageState, std::size_t> packings, runs;
   std::map<CheckpointState, std::size_t> in;
-  std::size_t left = 0;  // largest number of checkpoints that unfinished runs will still record
+  std::size_t left = 0;  // upper limit of the number of checkpoints still to be recorded
   for (const Stage& stage : experiment.runs) {
     for (const CheckpointHistory& c : content.runs.at(stage.id).checkpoints) ++in[c.record.state];
     const bool is_packing = stage.kind == name_of(StageKind::prepare);
@@ -352,7 +352,7 @@ json workflow(const Content& content, const Experiment& experiment) {
 }
 
 /// The columns that the page shows at first: identifiers, swept parameters, states and results of
-/// the runs. In each item, `at` is the index of the column in the experiment's table.
+/// the runs. Each element describes one column; `at` is its index in the experiment's table.
 json columns_of(const Experiment& experiment) {
   const Table& table = experiment.table.table;
   json shown = json::array();
@@ -597,7 +597,7 @@ void add_runs(Content& content) {
     selection.experiments = {manifest.experiment};
     try {
       experiment.table = run_table(content.store, selection, RowPer::run, content.options);
-      // Another program may have declared runs after experiments_of() listed the runs.
+      // Also adds runs that another program declared after experiments_of() had listed the runs.
       for (const FrameRun& run : experiment.table.histories)
         add_run_lineage(content.store, run.stage.id, content.runs);
       content.report += experiment.table;

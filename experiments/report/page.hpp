@@ -28,7 +28,7 @@ struct Report : MeasureOutcome {
   /// a store or a file are escaped.
   std::string html;
   bool interactive = false;
-  std::size_t experiments = 0, figures = 0, stages = 0;  ///< numbers in the page
+  std::size_t experiments = 0, figures = 0, stages = 0;  ///< how many of each the page has
   std::size_t packings = 0, checkpoints = 0;  ///< runs shown in 3D, and their checkpoints
   std::set<std::string> undrawn;   ///< a line for each drawing that failed, with the reason
   std::set<std::string> problems;  ///< a line for each figure that is unknown or invalid
