@@ -95,7 +95,8 @@ std::string wrong_in_expression(const std::string& text) {
   try {
     Parser checked(text);
     checked.parser.Eval();
-    if (checked.parser.GetNumResults() > 1) return "is not an expression: it gives several numbers";
+    if (checked.parser.GetNumResults() > 1)
+      return "gives several numbers, but an expression must give one number";
   } catch (const mu::ParserError& error) {
     return fmt::format("is not an expression: {}", error.GetMsg());
   }

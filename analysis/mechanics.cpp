@@ -219,7 +219,7 @@ std::vector<Provider> mechanics_providers() {
             {"kinetic_energy_per_grain_J", "J",
              "kinetic energy per grain, half a time step before the checkpoint"},
             {"gravitational_energy_per_grain_J", "J",
-             "weight of a grain times mean height above the bottom wall"}},
+             "weight of a grain times the mean height of the grains above the bottom wall"}},
        .compute = compute}};
 }
 

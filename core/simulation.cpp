@@ -27,7 +27,8 @@ Simulation::Simulation(Cell cell, const Scene& scene, const State& state,
       walls_(cell_),
       lists_(kernels_, settings.lists, cell_.depth, walls_, team_) {
   if (state.position.cols() == 0 || state.position.cols() != state.velocity.cols()) {
-    throw std::invalid_argument("a simulation needs at least one grain and one velocity per grain");
+    throw std::invalid_argument(
+        "a simulation needs at least one grain, and one velocity for each grain");
   }
   // A neighbour list can hold only one periodic image of each neighbour.
   if (!(cell_.depth > 2 + 4 * settings.lists.widest_margin(cell_.depth))) {

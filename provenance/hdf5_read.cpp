@@ -144,7 +144,7 @@ Object::Object(Bytes file, std::uint64_t address, std::string path)
     for (std::size_t b = 0; b < blocks.size(); ++b) {
       for (Cursor cursor(blocks[b]); cursor.rest().size() >= 8;) {
         // The count decreases, so blocks that point at each other cannot cause an endless loop.
-        if (messages-- == 0) fail("has more messages than the number in its header");
+        if (messages-- == 0) fail("has more messages than its header states");
         const std::uint64_t type = cursor.number(2), size = cursor.number(2);
         if ((cursor.number(1) & 2) != 0) fail("shares a message with another object");
         cursor.take(3);

@@ -67,7 +67,8 @@ void add_speed(CLI::App& bench, Context& context) {
 }  // namespace
 
 void add_bench(CLI::App& app, Context& context) {
-  CLI::App* command = app.add_subcommand("bench", "Measure the program on this machine");
+  CLI::App* command =
+      app.add_subcommand("bench", "Measure the speed of the program on this machine");
   command->require_subcommand(1);
   command->footer("Example:\n  shearcell bench speed");
   add_speed(*command, context);

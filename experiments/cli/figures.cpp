@@ -174,8 +174,8 @@ void add_figures(CLI::App& app, Context& context) {
   add_selection_options(*command, how.runs);
   command->get_option("--experiment")
       ->description(
-          "Draw figures with runs of this experiment only; a figure given by name need not be "
-          "listed in the manifest");
+          "Draw figures with runs of this experiment only. Figures given by name are drawn even if "
+          "its manifest does not list them");
   command->get_option("--scale")->expected(1)->description(
       "Scale of the runs (default: for each experiment, the scale of the run that was added last)");
   command

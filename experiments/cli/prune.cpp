@@ -118,7 +118,8 @@ void prune(const PruneOptions& options, Context& context) {
   if (go) {
     const MeasureOptions measuring{
         .workers = usable_cores(),
-        .report = terminal_counter("measuring before files are deleted: checkpoint")};
+        .report =
+            terminal_counter("measuring checkpoints before their files are deleted: checkpoint")};
     freed = free_files(store, records, measuring, options.choice.last_too, context);
     freed.bytes += store.prune(leftovers);
   }

@@ -234,7 +234,8 @@ void add_job_options(CLI::App& command, SubmitOptions& options) {
                      "Threads inside each run; more than one is useful for large cells");
   command
       .add_option("--scratch", job.scratch,
-                  "Folder on each node's own disk to work in, such as /scratch or '$TMPDIR'. The "
+                  "Working folder of the tasks, on each node's own disk, such as /scratch or "
+                  "'$TMPDIR'. The "
                   "results are copied to the task's store every five minutes")
       ->check(unfit_scratch)
       ->type_name("DIR");

@@ -226,7 +226,8 @@ void add_verify(CLI::App& app, Context& context) {
              "Recompute K sampled checkpoints and compare every bit", "K", 1, 1'000'000'000);
   add_number(*command, "--measures", options->measures,
              "Recompute the cached measures of K sampled checkpoints (default: 8)", "K");
-  add_number(*command, "--seed", options->seed, "Random seed (default: from the last event)");
+  add_number(*command, "--seed", options->seed,
+             "Random seed (default: derived from the hash of the last event)");
   add_threads_option(*command, options->threads,
                      "Threads of a replay; more than one is useful for large cells");
   add_common_options(

@@ -158,7 +158,7 @@ void fields(Scale& scale, const auto& visit) {
          .doc = "`every_cycles`: number of cycles between checkpoints, default 1; the last cycle "
                 "always has a checkpoint. `phases`: in the cycle after each checkpoint of "
                 "`every_cycles`, further checkpoints are written at these fractions of the cycle. "
-                "The pause is a part of the cycle. Default: none",
+                "A pause counts as a part of the cycle. Default: none",
          .example = "{every_cycles: 1, phases: [0.25, 0.5, 0.75]}"});
   visit(scale.until,
         {.name = "until",
@@ -319,10 +319,11 @@ void fields(Placed<ClaimSpec>& claim, const auto& visit) {
          .longest = kLongestName});
   visit(claim.id, {.name = "name", .doc = "older name of the key `id`"});
   visit(claim.figure,
-        {.name = "figure", .doc = "see `figure` of a plot; default: the first part of `id`"});
+        {.name = "figure",
+         .doc = "see `figure` of a plot; default: the part of `id` before its first dot"});
   visit(claim.compare,
         {.name = "compare",
-         .doc = "required; a measure or an expression, as in `y` of a plot, but no curve",
+         .doc = "required; a measure or an expression, as in `y` of a plot; curves are not allowed",
          .names = can_be_compared,
          .terms = terms,
          .required = true});
@@ -857,7 +858,7 @@ struct Reader {
         reject_value(item, "is listed twice", "Keep one of them.");
       } else if (about.name == "figures" && find_named(figures_to_list, name) == nullptr) {
         reject_value(item, with_nearest("lists an unknown figure", name, names_of(figures_to_list)),
-                     "`shearcell figures --help` lists them.");
+                     "`shearcell figures --help` shows the known figures.");
       }
       names.push_back(name);
     }

@@ -125,9 +125,9 @@ void fit(std::vector<ChosenRun>& runs, const PackingChoice& choice, Packings& pa
     runs.pop_back();
   }
   if (!left_out.empty()) {
-    packings.notes.push_back(
-        fmt::format("no room for the packings of {} ({}); raise --packings-mb to show more",
-                    counted(left_out.size(), "run"), some_of(left_out)));
+    packings.notes.push_back(fmt::format(
+        "no room for the packings of {} ({}); to show more packings, raise --packings-mb",
+        counted(left_out.size(), "run"), some_of(left_out)));
   }
   std::size_t frames = std::max<std::size_t>(1, choice.frames);
   while (frames > 1 && bytes_with(runs, frames) > choice.budget) --frames;

@@ -175,7 +175,8 @@ TEST_F(Prune, KeepsAStateThatCannotBeAnalysed) {
     file = store.record_checkpoint(run, together).file;
     store.complete_stage(run);
   }
-  expect(4, {"prune", run, "--yes"}, {"not measured: ", "kept: the file"});
+  expect(4, {"prune", run, "--yes"},
+         {"not measured: ", "kept, because measuring failed: the file"});
   EXPECT_TRUE(fs::exists(path("shearcell-store/" + file)));
 }
 
@@ -227,7 +228,8 @@ TEST_F(Prune, DeletesNothingIfMeasuresCannotBeKept) {
   start_again();
   fs::create_directories(path("shearcell-store/derived.sqlite/in-the-way"));
   const std::size_t files = objects();
-  expect(1, {"prune", "--keep-every", "5", "--yes"}, {"measures cannot be cached", "kept: "});
+  expect(1, {"prune", "--keep-every", "5", "--yes"},
+         {"measures cannot be cached", "kept, because measuring failed: "});
   EXPECT_EQ(objects(), files);
   EXPECT_EQ(pruned_events(), 0U);
 }
@@ -540,7 +542,7 @@ TEST_F(Prune, RunDeletesNothingIfMeasuresCannotBeKept) {
   fs::remove(path("thin/derived.sqlite"));
   fs::create_directories(path("thin/derived.sqlite/in-the-way"));
   expect(1, {"run", "m.yaml", "--cycles", "5", "--keep-every", "2", "-q", "--store", "thin"},
-         {"measures cannot be cached", "kept: "});
+         {"measures cannot be cached", "kept, because measuring failed: "});
   EXPECT_TRUE(Store(path("thin"), Access::read).events("", "CheckpointPruned").empty());
 }
 

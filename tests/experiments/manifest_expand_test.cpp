@@ -348,7 +348,8 @@ TEST(Expand, WarnsOfPlotsAndClaimsThatCannotBeMade) {
                   "2 variants have fluid=still; `minus` must select"),
         std::pair("y: phi, minus: {grains: 700}", "no variant has grains=700; `minus` must select"),
         std::pair("y: phi, minus: {fluid: still, walls: rough}",
-                  "omits fluid=still,walls=smooth, fluid=cell,walls=smooth, because fluid=still"),
+                  "omits fluid=still,walls=smooth, fluid=cell,walls=smooth, because the subtracted "
+                  "variant"),
         std::pair("y: phi, at_cycle: 2", "at_cycle has no effect")}) {
     const auto found = warnings(fmt::format("plots: [{{name: own, {}}}]\n", plot));
     ASSERT_EQ(found.size(), 1U) << plot;

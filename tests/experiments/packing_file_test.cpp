@@ -536,9 +536,10 @@ TEST(PackingFile, EveryPartIsReadRefusedOrNamed) {
 }
 
 /// Expects that two grains of a file of the manifest's unit d are refused because of this part.
-void expect_unread(const std::string& file, const std::string& text, const std::string& part) {
+void expect_unread(const std::string& file, const std::string& text, const std::string& part,
+                   const std::string& problem = "cannot be read") {
   const std::string says = message_of<ManifestError>([&] { read_packing(text, file, kInD); });
-  EXPECT_NE(says.find("cannot be read"), says.npos) << text << says;
+  EXPECT_NE(says.find(problem), says.npos) << text << says;
   EXPECT_NE(says.find("(got " + part), says.npos) << text << says;
 }
 
@@ -567,13 +568,14 @@ TEST(PackingFile, ABoxOrUnitInAnotherFormIsRefused) {
 
 TEST(PackingFile, VelocitiesUnderOtherNamesAreRefused) {
   for (const std::string name : {"p", "dxdt", "u"}) {
-    expect_unread("a.xyz", with_columns(name + ":R:3", "1 0 0"), name);
+    expect_unread("a.xyz", with_columns(name + ":R:3", "1 0 0"), name, "is not a valid name");
   }
   for (const std::string name : {"vcmx", "vxu", "vzu"}) {
-    expect_unread("a.dump", dump("id x y z " + name, "1 1 1 1 1\n2 3 3 3 1\n"), name);
+    expect_unread("a.dump", dump("id x y z " + name, "1 1 1 1 1\n2 3 3 3 1\n"), name,
+                  "is not a valid name");
   }
   for (const std::string name : {"ux", "U:0", "dx/dt"}) {
-    expect_unread("a.csv", csv(name, "1"), name);
+    expect_unread("a.csv", csv(name, "1"), name, "is not a valid name");
   }
   EXPECT_EQ(describe(read_packing(csv("p", "7"), "a.csv", kInD)), kTwo + "; not read: p");
 }

@@ -308,7 +308,7 @@ TEST_F(UntilTest, IsNotDecidedWithoutTheCheckpointsThatDecideIt) {
   EXPECT_EQ(result.blocked, 1U);
   ASSERT_EQ(result.messages.size(), 1U);
   EXPECT_TRUE(has(result.messages[0],
-                  "may decide where the run ends (`until`), was pruned; "
+                  "was pruned, but it may decide where the run ends (`until`); "
                   "`shearcell regenerate"))
       << result.messages[0];
   EXPECT_EQ(sheared(store_).cycle, static_cast<double>(end_));
