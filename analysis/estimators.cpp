@@ -190,7 +190,8 @@ Verdict compare(const Claim& claim, const Scalar& scalar, RunGroup a, RunGroup b
 }
 
 Verdict compare_with(const Claim& claim, const Scalar& scalar, RunGroup runs, double published) {
-  const double sign = published < 0 ? -1 : 1;  // so that number(value) > 0 if value > published
+  const double sign =
+      published < 0 ? -1 : 1;  // a relative difference is positive if value > published
   const auto number = [&](double value) {
     return scalar.relative ? sign * (value / published - 1) : value - published;
   };

@@ -43,7 +43,7 @@ struct Measures {
   std::map<std::string, std::vector<double>, std::less<>> of_grains = {};  ///< by grain id
   std::optional<CrystalliteMap> crystallite_map = {};
 
-  /// The number of a measure; NaN if it was not measured.
+  /// The value of the measure `name`; NaN if it was not measured.
   double number(std::string_view name) const;
 };
 

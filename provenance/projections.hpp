@@ -53,8 +53,9 @@ std::map<std::string, TableRows> projection_rows(const sqlite::Database& databas
 NotFound unknown_stage(std::string_view id);
 NotFound unknown_checkpoint(std::string_view run, std::string_view sha256);
 
-/// Whether `wanted` adds something to the stored stage `known`: no membership of `known` has the
-/// place and the checkpoint interval of `wanted` and at least its target. True if `known` is empty.
+/// Whether `wanted` adds something to the stored stage `known`. It adds nothing if a membership of
+/// `known` has the same place, the same checkpoint interval, and a target at least as large. True
+/// if `known` is empty.
 bool adds_something(const std::optional<Stage>& known, const Membership& wanted);
 /// False if the last run declared for `place` is another run, for example one with another packing.
 bool holds_place(const sqlite::Database& database, std::string_view run, const Place& place);

@@ -26,7 +26,8 @@ struct KernelTimes {
   // walls, and the step without walls and neighbours. The results of the repetitions are written to
   // `elsewhere`. `sampled`: total time for sampling.
   double sampled = 0, whole = 0, without_walls = 0, without_neighbours = 0;
-  // Numbers of blocks and of their neighbour slots in all sampled steps. Each step counts once.
+  // Numbers of blocks and of their neighbour slots, summed over the sampled steps. The repetitions
+  // of a step are not counted.
   double blocks = 0, slots = 0;
   std::vector<double> elsewhere;
 };

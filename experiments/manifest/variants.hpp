@@ -44,10 +44,10 @@ class Filter {
   explicit Filter(const std::vector<std::string>& wanted);
   explicit Filter(const std::vector<std::uint64_t>& wanted);
 
-  /// Whether the texts select `value`. A text may also use parts of `name`, the display name of
-  /// `value`. If several texts have the same keys, `value` must fit at least one of these texts:
-  /// "a=1", "a=2" and "b=3" select values with b=3 that also have a=1 or a=2. Without texts, every
-  /// value is selected.
+  /// Whether the texts select `value`. The parts of a text may also come from `name`, the display
+  /// name of `value`. If several texts have the same keys, `value` must fit at least one of these
+  /// texts: "a=1", "a=2" and "b=3" select values with b=3 that also have a=1 or a=2. Without texts,
+  /// every value is selected.
   bool passes(const std::string& value, const std::string& name = "");
   /// The first of the given texts that selects none of the values in seen(), or null.
   const std::string* unfound() const;
