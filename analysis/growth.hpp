@@ -22,8 +22,8 @@ struct GrowthCount {
   /// More than half of the grains are in crystallites larger than s. The crystallites in `absorbed`
   /// are not counted here.
   std::size_t grew = 0;
-  /// Like `grew`, but the grains joined a larger crystallite: a crystallite larger than s contributed
-  /// more grains to their new crystallite than any other one.
+  /// Like `grew`, but the grains joined a larger crystallite: a crystallite larger than s
+  /// contributed more grains to their new crystallite than any other one.
   std::size_t absorbed = 0;
   /// More than half of the grains are in crystallites smaller than s.
   std::size_t shrank = 0;
