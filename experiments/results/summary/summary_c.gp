@@ -226,15 +226,15 @@ $series8 << EOD
 0.67466205,24.0630856,0.000354416952,8.11808241
 0.679148706,28.8095238,,
 EOD
-plot keyentry with linespoints lc rgb '#e69f00' lw 1.2 dt 2 pt 6 ps 0.4 title 'drag: fluid=cell (1 to 10 runs)', \
-     keyentry with linespoints lc rgb '#56b4e9' lw 1.2 dt 2 pt 8 ps 0.4 title 'drag: fluid=still (1 to 10 runs)', \
-     keyentry with linespoints lc rgb '#cc79a7' lw 1.2 pt 6 ps 0.4 title 'moving\_wall: moving\_wall=top (1 to 10 runs)', \
-     keyentry with linespoints lc rgb '#0072b2' lw 1.2 dt 2 pt 6 ps 0.4 title 'relaxation: protocol=paused (1 to 10 runs)', \
-     keyentry with linespoints lc rgb '#56b4e9' lw 1.2 pt 4 ps 0.4 title 'timestep: steps\_per\_cycle=20000 (1 to 10 runs)', \
-     keyentry with linespoints lc rgb '#000000' lw 1.2 pt 6 ps 0.4 title 'timestep: steps\_per\_cycle=28571 (1 to 10 runs)', \
-     keyentry with linespoints lc rgb '#d55e00' lw 1.2 pt 10 ps 0.4 title 'timestep: steps\_per\_cycle=57143 (1 to 10 runs)', \
-     keyentry with linespoints lc rgb '#009e73' lw 1.2 pt 12 ps 0.4 title 'timestep: steps\_per\_cycle=76923 (1 to 10 runs)', \
-     keyentry with linespoints lc rgb '#0072b2' lw 1.2 dt 2 pt 6 ps 0.4 title 'walls: walls=smooth (1 to 5 of 6 runs)', \
+plot keyentry with linespoints lc rgb '#e69f00' lw 1.2 pt 4 ps 0.4 title 'drag: fluid=cell (1 to 10 runs)', \
+     keyentry with linespoints lc rgb '#56b4e9' lw 1.2 pt 6 ps 0.4 title 'drag: fluid=still (1 to 10 runs)', \
+     keyentry with linespoints lc rgb '#cc79a7' lw 1.2 pt 13 ps 0.4 title 'moving\_wall: moving\_wall=top (1 to 10 runs)', \
+     keyentry with linespoints lc rgb '#0072b2' lw 1.2 pt 11 ps 0.4 title 'relaxation: protocol=paused (1 to 10 runs)', \
+     keyentry with linespoints lc rgb '#56b4e9' lw 1.2 pt 7 ps 0.4 title 'timestep: steps\_per\_cycle=20000 (1 to 10 runs)', \
+     keyentry with linespoints lc rgb '#000000' lw 1.2 pt 9 ps 0.4 title 'timestep: steps\_per\_cycle=28571 (1 to 10 runs)', \
+     keyentry with linespoints lc rgb '#d55e00' lw 1.2 pt 13 ps 0.4 title 'timestep: steps\_per\_cycle=57143 (1 to 10 runs)', \
+     keyentry with linespoints lc rgb '#009e73' lw 1.2 pt 4 ps 0.4 title 'timestep: steps\_per\_cycle=76923 (1 to 10 runs)', \
+     keyentry with linespoints lc rgb '#0072b2' lw 1.2 pt 7 ps 0.4 title 'walls: walls=smooth (1 to 5 of 6 runs)', \
      $series8 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#0072b2' fs transparent solid 0.2 noborder notitle, \
      $series7 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#009e73' fs transparent solid 0.2 noborder notitle, \
      $series6 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#d55e00' fs transparent solid 0.2 noborder notitle, \
@@ -244,22 +244,22 @@ plot keyentry with linespoints lc rgb '#e69f00' lw 1.2 dt 2 pt 6 ps 0.4 title 'd
      $series2 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#cc79a7' fs transparent solid 0.2 noborder notitle, \
      $series1 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#56b4e9' fs transparent solid 0.2 noborder notitle, \
      $series0 using 1:($2-$4):($2+$4) with filledcurves fc rgb '#e69f00' fs transparent solid 0.2 noborder notitle, \
-     $series8 using 1:2 with lines lc rgb '#0072b2' lw 1.2 dt 2 pt 6 ps 0.4 notitle, \
-     $series8 every 2 using 1:2 with points lc rgb '#0072b2' lw 1.2 dt 2 pt 6 ps 0.4 notitle, \
-     $series7 using 1:2 with lines lc rgb '#009e73' lw 1.2 pt 12 ps 0.4 notitle, \
-     $series7 every 2 using 1:2 with points lc rgb '#009e73' lw 1.2 pt 12 ps 0.4 notitle, \
-     $series6 using 1:2 with lines lc rgb '#d55e00' lw 1.2 pt 10 ps 0.4 notitle, \
-     $series6 every 2 using 1:2 with points lc rgb '#d55e00' lw 1.2 pt 10 ps 0.4 notitle, \
-     $series5 using 1:2 with lines lc rgb '#000000' lw 1.2 pt 6 ps 0.4 notitle, \
-     $series5 every 2 using 1:2 with points lc rgb '#000000' lw 1.2 pt 6 ps 0.4 notitle, \
-     $series4 using 1:2 with lines lc rgb '#56b4e9' lw 1.2 pt 4 ps 0.4 notitle, \
-     $series4 every 2 using 1:2 with points lc rgb '#56b4e9' lw 1.2 pt 4 ps 0.4 notitle, \
-     $series3 using 1:2 with lines lc rgb '#0072b2' lw 1.2 dt 2 pt 6 ps 0.4 notitle, \
-     $series3 every 2 using 1:2 with points lc rgb '#0072b2' lw 1.2 dt 2 pt 6 ps 0.4 notitle, \
-     $series2 using 1:2 with lines lc rgb '#cc79a7' lw 1.2 pt 6 ps 0.4 notitle, \
-     $series2 every 2 using 1:2 with points lc rgb '#cc79a7' lw 1.2 pt 6 ps 0.4 notitle, \
-     $series1 using 1:2 with lines lc rgb '#56b4e9' lw 1.2 dt 2 pt 8 ps 0.4 notitle, \
-     $series1 every 2 using 1:2 with points lc rgb '#56b4e9' lw 1.2 dt 2 pt 8 ps 0.4 notitle, \
-     $series0 using 1:2 with lines lc rgb '#e69f00' lw 1.2 dt 2 pt 6 ps 0.4 notitle, \
-     $series0 every 2 using 1:2 with points lc rgb '#e69f00' lw 1.2 dt 2 pt 6 ps 0.4 notitle
+     $series8 using 1:2 with lines lc rgb '#0072b2' lw 1.2 pt 7 ps 0.4 notitle, \
+     $series8 every 2 using 1:2 with points lc rgb '#0072b2' lw 1.2 pt 7 ps 0.4 notitle, \
+     $series7 using 1:2 with lines lc rgb '#009e73' lw 1.2 pt 4 ps 0.4 notitle, \
+     $series7 every 2 using 1:2 with points lc rgb '#009e73' lw 1.2 pt 4 ps 0.4 notitle, \
+     $series6 using 1:2 with lines lc rgb '#d55e00' lw 1.2 pt 13 ps 0.4 notitle, \
+     $series6 every 2 using 1:2 with points lc rgb '#d55e00' lw 1.2 pt 13 ps 0.4 notitle, \
+     $series5 using 1:2 with lines lc rgb '#000000' lw 1.2 pt 9 ps 0.4 notitle, \
+     $series5 every 2 using 1:2 with points lc rgb '#000000' lw 1.2 pt 9 ps 0.4 notitle, \
+     $series4 using 1:2 with lines lc rgb '#56b4e9' lw 1.2 pt 7 ps 0.4 notitle, \
+     $series4 every 2 using 1:2 with points lc rgb '#56b4e9' lw 1.2 pt 7 ps 0.4 notitle, \
+     $series3 using 1:2 with lines lc rgb '#0072b2' lw 1.2 pt 11 ps 0.4 notitle, \
+     $series3 every 2 using 1:2 with points lc rgb '#0072b2' lw 1.2 pt 11 ps 0.4 notitle, \
+     $series2 using 1:2 with lines lc rgb '#cc79a7' lw 1.2 pt 13 ps 0.4 notitle, \
+     $series2 every 2 using 1:2 with points lc rgb '#cc79a7' lw 1.2 pt 13 ps 0.4 notitle, \
+     $series1 using 1:2 with lines lc rgb '#56b4e9' lw 1.2 pt 6 ps 0.4 notitle, \
+     $series1 every 2 using 1:2 with points lc rgb '#56b4e9' lw 1.2 pt 6 ps 0.4 notitle, \
+     $series0 using 1:2 with lines lc rgb '#e69f00' lw 1.2 pt 4 ps 0.4 notitle, \
+     $series0 every 2 using 1:2 with points lc rgb '#e69f00' lw 1.2 pt 4 ps 0.4 notitle
 set output
