@@ -67,6 +67,11 @@ bool has_one_side(const ClaimSpec& claim);
 /// The figure of the claim: `figure` if given, otherwise the id up to its first dot.
 std::string figure_of(const ClaimSpec& claim);
 
+/// The id without the value of `for_each`: "S5a.onset" for "S5a.onset@amplitude_rad=0.05".
+inline std::string without_value(const std::string& id) {
+  return id.substr(0, id.find('@'));
+}
+
 /// The groups of runs that a claim compares. A claim with one side has an empty second group.
 struct ClaimSides {
   std::array<std::vector<const FrameRun*>, 2> runs;

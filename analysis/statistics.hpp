@@ -117,8 +117,8 @@ std::optional<SpreadBetween> variance_between(std::span<const std::vector<double
                                               double level = confidence_level);
 
 /// Ratio a / b of two independent estimates of positive quantities. The lower error of ln(a / b) is
-/// the lower error of ln a and the upper error of ln b, added in quadrature. The upper error is
-/// computed likewise from the upper error of ln a and the lower error of ln b: G. Y. Zou and A.
+/// the lower error of ln a and the upper error of ln b, added in quadrature. The upper error is the
+/// upper error of ln a and the lower error of ln b, added in quadrature. Source: G. Y. Zou and A.
 /// Donner, Stat. Med. 27, 1693 (2008).
 Estimate ratio(const Estimate& a, const Estimate& b);
 

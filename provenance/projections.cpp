@@ -241,8 +241,8 @@ class Projector {
     run("UPDATE checkpoints SET state = ?3 WHERE run = ?1 AND sha256 = ?2", id_, sha256, state);
   }
 
-  /// Called after checkpoint `sha256` was recorded, rejected or regenerated. Sets cycle, step and
-  /// state hash of the run to those of the run's last recorded checkpoint. Does nothing if the run
+  /// Called after checkpoint `sha256` was recorded, rejected or regenerated. Copies cycle, step and
+  /// state hash from the last recorded checkpoint of the run to the run. Does nothing if the run
   /// has reached a later step than that of checkpoint `sha256`, so that the run is not set back if
   /// the checkpoint at the later step has been pruned.
   void move_to_furthest_from(const std::string& sha256) const {

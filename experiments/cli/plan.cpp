@@ -118,8 +118,8 @@ std::vector<std::string> powers_of(const Store& store, const Plan& plan) {
   options.only_cached = true;
   options.runs.scales = {scale_name(plan.scale)};
   std::vector<std::string> powers;
-  for (const WantedFigure& wanted : wanted_figures(store, {}, {plan.manifest.experiment}).figures) {
-    if (wanted.figure.claims.empty()) continue;
+  for (const WantedFigure& wanted : wanted_figures(store).figures) {
+    if (wanted.experiment != plan.manifest.experiment || wanted.figure.claims.empty()) continue;
     try {
       for (const Verdict& verdict : compute_figure(store, wanted, options).verdicts) {
         if (verdict.power) powers.push_back(fmt::format("{} {:.2f}", verdict.id, *verdict.power));
@@ -136,10 +136,9 @@ std::vector<std::string> powers_of(const Store& store, const Plan& plan) {
 // cannot start count as ended.
 void note_looks(const std::vector<Plan>& plans, const std::vector<Line>& lines, const Store* store,
                 const std::vector<Stage>& known, std::vector<std::string>& notes) {
-  std::set<std::string> failed, recorded;  // failed: ids of stages; recorded: names of experiments
+  std::set<std::string> failed;  // ids
   for (const Stage& stage : known) {
     if (stage.state == StageState::failed) failed.insert(stage.id);
-    for (const Membership& m : stage.memberships) recorded.insert(m.place.experiment);
   }
   for (const Plan& plan : plans) {
     for (const Scale& scale : scales_of(plan.manifest)) {
@@ -160,9 +159,7 @@ void note_looks(const std::vector<Plan>& plans, const std::vector<Line>& lines, 
       const auto next =
           std::ranges::find_if(scale.looks, [&](std::uint64_t look) { return left_at(look) > 0; });
       if (next == scale.looks.end()) continue;
-      const std::vector<std::string> powers = recorded.contains(plan.manifest.experiment)
-                                                  ? powers_of(*store, plan)
-                                                  : std::vector<std::string>();
+      const auto powers = store == nullptr ? std::vector<std::string>() : powers_of(*store, plan);
       notes.push_back(fmt::format(
           "{}: the next planned look (interim analysis) uses {} of {} and needs {:.3g} more "
           "particle-steps. {}",

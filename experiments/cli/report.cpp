@@ -87,7 +87,7 @@ void add_report(CLI::App& app, Context& context) {
   add_selection_options(*sub, options.runs);
   sub->get_option("--scale")->expected(1)->description(
       "Only runs of this scale. Default: runs of all scales. A figure shows runs of one scale: "
-      "that of its most recently added run");
+      "the scale of its most recently added run");
   sub->add_option("--run", packings.runs,
                   "Show these runs in 3D instead of the last run of each variant")
       ->type_name("RUN");

@@ -93,7 +93,7 @@ void add_table(CLI::App& app, Context& context) {
           columns_text +
           "Columns whose values need a simulation are written only with an option, such as "
           "--rest.\ncritical_size and all columns listed after it are written only with --per run. "
-          "With --per run, all\nother measures are those of the newest checkpoint of each run. A "
+          "With --per run, all\nother measures are measures of the run's newest checkpoint. A "
           "run that several experiments share\nhas rows for each experiment, up to the cycles "
           "that the experiment asks for.\n\nCurves:\n" +
           curves_text +

@@ -9,6 +9,7 @@
 #include <set>
 #include <utility>
 
+#include "analysis/claims.hpp"
 #include "analysis/error.hpp"
 #include "analysis/plot.hpp"
 #include "experiments/figures/lineage.hpp"
@@ -164,12 +165,12 @@ void mark_primary(const std::vector<RegisteredManifest>& manifests, const RunSel
       for (const PrimaryClaim& primary : scale.primary) {
         bool named = false, same_claim = false;  // same_claim: ids are equal if @VALUE is ignored
         for (Verdict& verdict : figure.verdicts) {
-          const std::string claim = verdict.id.substr(0, verdict.id.find('@'));
+          const std::string claim = without_value(verdict.id);
           const bool is_it =
               primary.id == verdict.id || primary.id == verdict.claim || primary.id == claim;
           verdict.primary |= is_it;
           named |= is_it;
-          same_claim |= primary.id.substr(0, primary.id.find('@')) == claim;
+          same_claim |= without_value(primary.id) == claim;
         }
         if (named || !same_claim || !selected.variants.empty() || !selected.seeds.empty()) continue;
         figure.notes.push_back(fmt::format("primary: no verdict has the id {}", primary.id));

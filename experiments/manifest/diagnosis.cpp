@@ -13,6 +13,7 @@
 #include <tuple>
 #include <utility>
 
+#include "analysis/claims.hpp"
 #include "analysis/estimators.hpp"
 #include "analysis/expression.hpp"
 #include "analysis/figure.hpp"
@@ -598,7 +599,6 @@ void check_primary(const Manifest& manifest, const std::vector<Scale>& scales,
       unchecked.insert(figure.claims.begin(), figure.claims.end());
     }
   }
-  const auto without_value = [](const string& id) { return id.substr(0, id.find('@')); };
   for (const Scale& scale : scales) {
     for (const auto& [id, at] : scale.primary) {
       if (ids.contains(id) || statements.contains(id)) continue;

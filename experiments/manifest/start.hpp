@@ -21,7 +21,7 @@ namespace shearcell {
 /// selects the run that has the same swept values as the variant. Only the keys that are swept both
 /// in `manifest` and in the run's experiment are compared.
 /// Throws ManifestError if no run or several runs remain, if the run has no checkpoint at the start
-/// cycle, or if the cell or the grains of the run differ from those of the variant.
+/// cycle, or if the run and the variant differ in their cells or grains.
 const Stage& recorded_run(const Manifest& manifest, const Scale& scale, const Variant& variant,
                           std::span<const Stage> known);
 

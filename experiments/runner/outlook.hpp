@@ -103,7 +103,7 @@ Outlook look_at(const Store& store, const Stage& stage);
 struct PlannedStage {
   const PlannedRun* run = nullptr;  ///< the first run with this stage
   Stage stage = {};
-  std::vector<Membership> memberships = {};  ///< those of the store, then those of the plans
+  std::vector<Membership> memberships = {};  ///< from the store, then from the plans
   std::vector<CheckpointRecord> checkpoints = {};
   Outlook look = {};
 };
