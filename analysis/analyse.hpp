@@ -16,7 +16,7 @@
 
 namespace shearcell {
 
-/// Measures of one packing, with their names in results. A mean over zero grains is NaN.
+/// Measures of one packing, by their names. A mean over zero grains is NaN.
 struct PackingMeasures {
   std::size_t grains = 0;               ///< N
   std::size_t interior_grains = 0;      ///< N_inves: grains at least 1.5 d from the wall surfaces

@@ -44,9 +44,9 @@ Term gumbel(double z, bool censored) {
   return censored ? Term{-power, power, power} : Term{z - power, power - 1, power};
 }
 
-/// z = (y - mu) / sigma is linear in three parameters: h = 1 / sigma, and the two components of
-/// g = mu / sigma, one for each term of the line mu = a + b x. Row k of `terms` has the
-/// coefficients for value k. A fixed parameter has a column of zeros in `terms`.
+/// With mu = a + b x, z = (y - mu) / sigma is linear in three parameters: 1 / sigma, a / sigma and
+/// b / sigma. Row k of `terms` has the coefficients for value k. A fixed parameter has a column of
+/// zeros in `terms`.
 struct Sample {
   CensoredValues values;
   Eigen::MatrixX3d terms;

@@ -45,11 +45,11 @@ std::optional<Estimate> censored_mean(std::span<const CensoredValue> values,
 /// degrees of freedom are used. If `paired`, a[k] and b[k] share a packing. The correlation of the
 /// two means is then the correlation of the residuals (G. Y. Zou, Psychol. Methods 12, 399 (2007)).
 /// A residual is a value minus the mean of its group. Pairs with a censored value are included: the
-/// residual of a censored value is unknown, so its expectation is used, given that the true value
-/// is larger than the censored value. Treating a[k] - b[k] as one censored value would give a bias,
-/// because it depends on b[k] whether this difference is censored. If no value is censored, the
-/// interval is Welch's interval or, for pairs, Student's interval. Empty if a group has fewer than
-/// two observed values.
+/// unknown residual of this value is replaced by its conditional expectation. The condition is that
+/// the true value is larger than the censored value. Treating a[k] - b[k] as one censored value
+/// would give a bias, because whether this difference is censored depends on b[k]. If no value is
+/// censored, the interval is Welch's interval or, for pairs, Student's interval. Empty if a group
+/// has fewer than two observed values.
 std::optional<Estimate> censored_difference(std::span<const CensoredValue> a,
                                             std::span<const CensoredValue> b, bool paired,
                                             double level = confidence_level);

@@ -25,14 +25,14 @@ struct Text {
   std::vector<TextPart> parts;
 
   Text() = default;
-  Text(const char* plain) : Text(std::string(plain)) {}  // NOLINT: a label is often plain
+  Text(const char* plain) : Text(std::string(plain)) {}  // NOLINT: implicit for string literals
   Text(std::string plain) { parts.push_back({std::move(plain), ""}); }  // NOLINT
   bool empty() const { return parts.empty(); }
 };
 Text operator+(Text first, const Text& second);
 
-/// Reads a text that has formulas between `$` signs, as in TeX: "drag $v_{fluid}$". In formulas
-/// letters are italic, and `_` or `^` lowers or raises the next character or the text in braces.
+/// Reads a text that has formulas between `$` signs, as in TeX: "drag $v_{fluid}$". Letters in
+/// formulas are italic; `_` lowers and `^` raises the next character or the text in braces.
 Text formula(std::string_view text);
 
 /// A number, a whole number, text, or empty. A cell is empty if its value was not measured, or if
@@ -75,7 +75,7 @@ struct Axis {
 struct ChartPoint {
   double x = 0;
   double y = 0;
-  std::optional<double> x_error = std::nullopt;  ///< standard error; given as data, not drawn
+  std::optional<double> x_error = std::nullopt;  ///< standard error; stored, but not drawn
   std::optional<double> y_error = std::nullopt;  ///< half of the bar or band
   std::optional<double> runs = std::nullopt;     ///< number of runs averaged in y
 };
@@ -176,8 +176,8 @@ std::string digits(double value, int significant = 9);
 /// The text without styles. A subscript follows "_", a superscript follows "^".
 std::string plain_text(const Text& text);
 
-/// Whether the chart can draw the point or the reference line. A logarithmic axis shows only
-/// positive values.
+/// Whether the chart can draw the point or, in the second overload, the reference line. A
+/// logarithmic axis shows only positive values.
 bool is_on_log_axes(const Chart& chart, const ChartPoint& point);
 bool is_on_log_axes(const Chart& chart, const ReferenceLine& line);
 

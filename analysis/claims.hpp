@@ -43,9 +43,9 @@ struct ClaimSpec {
   /// has only one side.
   std::array<nlohmann::json, 2> between = {nlohmann::json::object(), nlohmann::json::object()};
   std::optional<PublishedSpec> published = {};
-  /// Tolerance of the claim, in units of the measure. For waiting times it is the tolerance of
-  /// log2(ratio of a to b). A claim with a margin of 0 and a published number states that the
-  /// measure is above (Relation::higher) or below (Relation::lower) this number.
+  /// Tolerance, in units of the measure. For waiting times it is the tolerance of log2(ratio of the
+  /// two waiting times). A claim with a margin of 0 and a published number states that the measure
+  /// is above (Relation::higher) or below (Relation::lower) this number.
   double margin = 0;
   bool relative = false;  ///< the margin limits the relative difference
   /// The claim as a sentence. If empty, stated() makes the sentence from the other keys. With
@@ -81,11 +81,11 @@ struct ClaimSides {
 };
 ClaimSides sides_of(const ClaimSpec& claim, std::span<const FrameRun> runs);
 
-/// Returns one claim for each value that the parameter `for_each` has in the runs. Returns the
-/// claim itself if it has no `for_each`, or if no run has this parameter.
+/// Returns one claim for each value that the parameter ClaimSpec::for_each has in the runs. Returns
+/// the claim itself if `for_each` is empty, or if no run has this parameter.
 std::vector<ClaimSpec> each_of(const ClaimSpec& claim, std::span<const FrameRun> runs);
 
-/// Converts to a Claim. For Relation::lower its margin is negative. `sides`: ClaimSides::names.
+/// Converts to a Claim. Claim::margin is negative for Relation::lower. `sides`: ClaimSides::names.
 Claim stated(const ClaimSpec& claim, const std::array<std::string, 2>& sides);
 
 /// One sentence for each reason why the sides cannot be compared. `planned`: whether the sides hold
@@ -93,9 +93,9 @@ Claim stated(const ClaimSpec& claim, const std::array<std::string, 2>& sides);
 std::vector<std::string> problems_of_sides(const ClaimSpec& claim, const ClaimSides& sides,
                                            bool planned);
 
-/// A figure that has no panels, only the verdicts on the claim. A verdict is undecided if a side
-/// has no runs. Unless ClaimSpec::listed is true, Figure::make throws UsageError with the first
-/// problem that problems_of_sides() finds.
+/// A figure that has no panels, only the verdicts on the claim. A verdict is undecided if one of
+/// the claim's sides has no runs. Unless ClaimSpec::listed is true, Figure::make throws UsageError
+/// with the first problem that problems_of_sides() finds.
 Figure claim_figure(const ClaimSpec& claim);
 
 }  // namespace shearcell

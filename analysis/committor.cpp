@@ -21,11 +21,11 @@ Grains grains_of(const CrystalliteMap& map, const std::set<std::int32_t>& labels
 }
 
 /// Numbers of grains in a crystallite, by the origin of the grains. The comment on followed()
-/// defines "remembered", "descendant" and "foreign crystallite".
+/// defines "remembered", "foreign crystallite" and G.
 struct Origin {
   std::size_t own = 0;   ///< remembered grains
-  std::size_t last = 0;  ///< grains that were in descendants in the latest cycle with descendants
-  /// Label of a foreign crystallite -> number of grains that come from it.
+  std::size_t last = 0;  ///< grains in G
+  /// Label of a foreign crystallite -> number of grains that come from this crystallite.
   std::map<std::int32_t, std::size_t> of_other;
 
   bool continues_another() const {

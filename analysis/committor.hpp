@@ -22,8 +22,8 @@ inline constexpr std::size_t cycles_gone = 2;
 /// The last number is above the last bin. In each state at most one crystallite of each bin is
 /// followed. [choice]
 inline constexpr std::int32_t followed_bins[] = {3, 5, 8, 13, 21};
-/// A grain that was in a descendant is remembered for this number of cycles, as described at
-/// followed(). [choice]
+/// A grain of a descendant is remembered for this number of cycles. followed() defines
+/// "descendant" and "remembered". [choice]
 inline constexpr std::size_t remembered_cycles = 3;
 
 /// Labels of the crystallites to follow: in each size bin, the one that has the lowest grain id.
@@ -42,12 +42,12 @@ struct Followed {
 /// The first descendant is the crystallite itself. A grain is remembered if it belonged to a
 /// descendant in one of the last `remembered_cycles` cycles; cycles without a descendant are not
 /// counted. A foreign crystallite is a crystallite of the previous cycle that is not a descendant.
-/// A crystallite C of the current cycle continues a foreign crystallite X if C has more grains of X
-/// than remembered grains; a grain that is remembered does not count as a grain of X. C is a
+/// A crystallite C of the current cycle continues a foreign crystallite X if more of C's grains
+/// come from X than are remembered. A remembered grain does not count as a grain from X. C is a
 /// descendant if it has at least `least_descendant` grains, has a remembered grain, and continues
-/// no foreign crystallite. The followed crystallite has merged if two conditions hold: the current
-/// cycle has no descendant, and one crystallite that continues a foreign crystallite has at least
-/// half of the grains that were in descendants in the latest cycle with descendants.
+/// no foreign crystallite. Let G be the grains of all descendants in the latest cycle that had any.
+/// The followed crystallite has merged if the current cycle has no descendant, and if a crystallite
+/// that continues a foreign crystallite contains at least half of G.
 Followed followed(std::span<const CrystalliteMap* const> maps, std::int32_t label);
 
 /// Outcome for a followed crystallite. `undecided`: the clone ends before the outcome is known.

@@ -47,7 +47,7 @@ std::vector<std::int32_t> crystallites(const VoronoiDiagram& diagram,
 /// that crystallites can be followed from checkpoint to checkpoint.
 struct CrystalliteMap {
   std::vector<std::int32_t> grain = {};      ///< ids of the crystalline interior grains, ascending
-  std::vector<std::int32_t> label = {};      ///< index of the crystallite of each entry of `grain`
+  std::vector<std::int32_t> label = {};      ///< label[i]: index of the crystallite of grain[i]
   std::vector<std::int32_t> size = {};       ///< grains in each crystallite
   std::vector<Eigen::Vector3d> centre = {};  ///< centre of mass of each crystallite [d]
   double width = 0;                          ///< width of the cell [d]

@@ -24,7 +24,7 @@ struct Values {
   std::size_t runs = 0, censored = 0;
   std::map<Missing, std::size_t> missing;
   std::size_t not_positive = 0;  ///< runs left out because their value has no logarithm
-  bool enough = true;            ///< in each group, at least 3/4 of the runs have a number
+  bool enough = true;            ///< at least 3/4 of the runs in each group have a finite number
   Table entered = entered_with({"value", "missing"});
 
   void take(const Scalar& scalar, RunGroup group, const Number& number) {
@@ -106,7 +106,7 @@ Verdict conclude(const Claim& claim, const std::string& quantity, std::optional<
 struct Pairs {
   std::vector<CensoredValue> a, b;
   bool any = false;    ///< some runs of the two groups share a packing
-  bool enough = true;  ///< at least three quarters of each group's packings form pairs
+  bool enough = true;  ///< at least 3/4 of the packings of each group are in `a` and `b`
 };
 Pairs paired(RunGroup a, RunGroup b, const Values& values) {
   Pairs pairs;

@@ -28,14 +28,14 @@ struct Estimator {
   std::string_view name;      ///< name of the estimator in manifests
   std::string_view meaning;   ///< description in REFERENCE.md
   std::string_view key = {};  ///< a key that a claim must have to use this estimator; "": none
-  /// Claims may compare measures of runs (true), of checkpoints (false), or of either (empty).
+  /// The estimator uses measures of runs (true), of checkpoints (false), or either kind (empty).
   std::optional<bool> of_run = false;
   bool over_variants = false;  ///< a group of runs may contain several variants
   /// Claims with this estimator always have one group. With any other estimator, a claim has one
   /// group only if it has a published number.
   bool one_side = false;
   bool compares_variants = false;  ///< the group must contain several variants
-  /// The number with which a claim is compared if it has one group and no published number.
+  /// Without a published number, the estimate for a single group is compared with this number.
   std::string_view reference = "0";
   /// Returns a Scalar, which computes one number per run. The estimate is the mean of these numbers
   /// or, for two groups, the difference of their means. If this pointer is null, `decide` gives the
@@ -97,7 +97,7 @@ std::string words_of_column(const std::string& column);
 /// An empty table for the numbers that enter a verdict. Its columns are `group` (the run's
 /// variant), `seed`, `packing`, and those in `columns`.
 Table entered_with(const std::vector<TableColumn>& columns);
-/// Adds a row for the run to `entered`. `values`: the values of the columns after `packing`.
+/// Adds a row for the run to `entered`. `values`: one for each column after column `packing`.
 void enter(const FrameRun& run, const TableRow& values, Table& entered);
 
 }  // namespace shearcell

@@ -30,7 +30,7 @@ using ValueOf = std::function<double(const std::string& name)>;
 /// of a name in the expression, is not finite. The locale has no effect. Only one thread at a time
 /// may call an evaluator.
 using Evaluate = std::function<double(const ValueOf& value_of)>;
-/// Makes the evaluator of a text for which wrong_in_expression() returns "".
+/// Makes the evaluator of an expression. wrong_in_expression(text) must return "".
 Evaluate evaluator_of(const std::string& text);
 
 }  // namespace shearcell

@@ -83,9 +83,9 @@ struct Extent {
   }
 };
 
-/// Ticks of a logarithmic axis whose data include at most one power of ten. If the highest value is
-/// less than four times the lowest, the ticks have equal steps. Otherwise they are 1, 2 and 5 times
-/// powers of ten.
+/// Ticks of a logarithmic axis for data whose range contains at most one power of ten. If the
+/// highest value is less than four times the lowest, the ticks have equal steps. Otherwise they are
+/// 1, 2 and 5 times powers of ten.
 std::vector<std::string> ticks_of_decades(const Extent& data) {
   std::vector<std::string> ticks;
   const bool narrow = data.high < 4 * data.low;

@@ -50,9 +50,8 @@ auto smooth(const Sums& sums) {
   return (scatter > 1e-9 * n * xx).select((xx * y - x * xy) / scatter, y / n).eval();
 }
 
-/// The size that GrowthCurve::critical_size() defines. Infinity in the second of the three cases
-/// in which critical_size() is empty: above each rise of delta_rho through zero, shrinkage is at
-/// least as large as growth. Minus infinity in the third: from size 1 on, growth is larger.
+/// The size that GrowthCurve::critical_size() defines. If there is no such size: minus infinity if
+/// delta_rho > 0 at size 1 and the excess, summed over all sizes, is positive; otherwise infinity.
 template <class Sums>
 double rise(const Sums& sums) {
   const auto delta = smooth(sums);
@@ -70,8 +69,9 @@ double rise(const Sums& sums) {
   return found;
 }
 
-/// The largest size at which the summed excess (column `tail`) has its maximum. Infinity if the
-/// maximum is not positive. Minus infinity if the maximum is positive and is reached at size 1.
+/// The largest size at which the summed excess (column `tail`) has its maximum. Exceptions:
+/// infinity if the maximum is not positive; minus infinity if the sum at size 1 is a positive
+/// maximum.
 template <class Sums>
 double best_division(const Sums& sums) {
   const auto excess = sums.col(tail);
@@ -114,18 +114,18 @@ void follow(const CrystalliteMap& now, const CrystalliteMap& later, GrowthBySize
     if (l == later.grain.size()) break;
     if (later.grain[l] == now.grain[k]) ++shared[{now.label[k], later.label[l]}];
   }
-  // For one crystallite C of `now`: the places of its grains in `later`.
+  // The crystallites of `later` that contain the grains of one crystallite C of `now`.
   struct Outcome {
     // Numbers of grains of C whose crystallite in `later` is larger than C, as large as C, or
     // smaller than C.
     std::int32_t larger = 0, same = 0, smaller = 0;
-    std::int32_t most = 0;  // number of grains of C in `end`
-    std::size_t end = 0;    // the crystallite of `later` that has the most grains of C
+    std::int32_t most = 0;  // largest number of grains of C in one crystallite of `later`
+    std::size_t end = 0;    // label of this crystallite of `later`
   };
   std::vector<Outcome> fates(now.size.size());
   // The crystallite of `now` that contributed the most grains to one crystallite of `later`.
   struct Origin {
-    std::int32_t most = 0, size = 0;  // number of contributed grains; size of the contributor
+    std::int32_t most = 0, size = 0;  // number of grains that it contributed; its size
   };
   std::vector<Origin> origins(later.size.size());
   for (const auto& [labels, grains] : shared) {
@@ -148,7 +148,7 @@ void follow(const CrystalliteMap& now, const CrystalliteMap& later, GrowthBySize
     if (2 * larger > size) {
       ++(origins[end].size > size ? count.absorbed : count.grew);
     } else if (2 * (size - larger - same) > size) {
-      // More than half of the grains are in smaller crystallites or in no crystallite.
+      // Here, more than half of the grains are in smaller crystallites or in no crystallite.
       ++(2 * smaller > size ? count.shrank : count.vanished);
     }
   }

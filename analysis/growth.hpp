@@ -15,20 +15,20 @@
 
 namespace shearcell {
 
-/// How many crystallites of one size s grew, shrank, ... A crystallite is counted by where its
-/// grains are at the later time, and in at most one member. It is not counted, for example, if more
-/// than half of its grains are then in a crystallite of size s.
+/// Numbers of crystallites of one size s, by where their grains are at a later checkpoint. Each
+/// crystallite is counted at most once. It is not counted, for example, if more than half of its
+/// grains are later in crystallites of size s.
 struct GrowthCount {
-  /// More than half of the grains are in crystallites larger than s. The crystallites in `absorbed`
-  /// are not counted here.
+  /// Crystallites of which more than half of the grains are later in crystallites larger than s,
+  /// except those counted in `absorbed`.
   std::size_t grew = 0;
-  /// Like `grew`, but the grains joined a larger crystallite: a crystallite larger than s
-  /// contributed more grains to their new crystallite than any other one.
+  /// Like `grew`, but a larger crystallite absorbed the grains: of the earlier crystallites, the
+  /// one that contributed the most grains to the later crystallite is larger than s.
   std::size_t absorbed = 0;
-  /// More than half of the grains are in crystallites smaller than s.
+  /// Crystallites of which more than half of the grains are later in crystallites smaller than s.
   std::size_t shrank = 0;
-  /// More than half of the grains are in crystallites smaller than s or in no crystallite. The
-  /// crystallites in `shrank` are not counted here.
+  /// Crystallites of which more than half of the grains are later in crystallites smaller than s or
+  /// in no crystallite, except those counted in `shrank`.
   std::size_t vanished = 0;
 
   std::size_t larger() const { return grew + absorbed; }     ///< "growing" in the supplement
@@ -41,7 +41,7 @@ struct GrowthCount {
 /// was followed.
 using GrowthBySize = std::map<std::int32_t, GrowthCount>;
 
-/// For each crystallite of `now`, adds to `counts` whether it had grown, shrunk, ... in `later`.
+/// Adds the crystallites of `now` to `counts`, by where their grains are in `later`.
 void follow(const CrystalliteMap& now, const CrystalliteMap& later, GrowthBySize& counts);
 
 /// Counts over all pairs of a run's checkpoints that are `cycles` apart. One crystallite is counted
@@ -71,7 +71,7 @@ std::vector<GrowthRate> growth_rates(std::span<const GrowthBySize> runs,
 /// particular shape of the curve. All errors come from the bootstrap over runs.
 class GrowthCurve {
  public:
-  /// Standard deviation of the Gaussian, in ln(size). It is about 20 % of the size. [choice]
+  /// Standard deviation of the Gaussian, in ln(size); corresponds to about 20 % in size. [choice]
   static constexpr double bandwidth = 0.2;
   /// Larger crystallites are left out, because their growth ends when the whole cell is one
   /// crystal. [choice]
@@ -84,18 +84,17 @@ class GrowthCurve {
   double delta_rho(std::int32_t size) const;
   std::optional<double> delta_rho_error(std::int32_t size) const;  ///< bootstrap over runs
 
-  /// The size at which delta_rho rises through zero. If delta_rho rises through zero at several
-  /// sizes, the excess (growing minus shrinking crystallites) above each such zero is summed, and
-  /// the zero with the largest sum is returned. Empty in three cases: there are fewer than
-  /// least_bootstrap_runs runs; no such zero has a positive sum; or delta_rho > 0 at size 1, and
-  /// the sum over all sizes is at least as large as the sum above each zero. The interval comes
-  /// from the bootstrap. An end of the interval is infinite if too many bootstrap samples have no
-  /// critical size.
+  /// The size at which delta_rho rises through zero. For each such size, the excess (growing minus
+  /// shrinking crystallites) is summed over all larger sizes. If there are several such sizes, the
+  /// one with the largest sum is returned. Empty in three cases: there are fewer than
+  /// least_bootstrap_runs runs; no such sum is positive; or delta_rho > 0 at size 1, and the sum
+  /// over all sizes is at least as large as each of these sums. The interval comes from the
+  /// bootstrap; an end of the interval is infinite if too many samples have no critical size.
   std::optional<Estimate> critical_size() const;
-  /// The size s for which the number of growing minus the number of shrinking crystallites, among
-  /// all crystallites of at least s grains, is largest. At s the monotone (isotonic) fit of the
-  /// unsmoothed delta_rho crosses zero (M. Ayer et al., Ann. Math. Stat. 26, 641 (1955)). This size
-  /// serves as a check of critical_size(), which is more precise.
+  /// The size s for which the excess, summed over all sizes of at least s grains, is largest. At s
+  /// the monotone (isotonic) fit of the unsmoothed delta_rho crosses zero (M. Ayer et al., Ann.
+  /// Math. Stat. 26, 641 (1955)). This size serves as a check of critical_size(), which is more
+  /// precise.
   std::optional<Estimate> monotone_critical_size() const;
   /// 90 % interval of the critical size in repeated studies, each with `runs` runs.
   Interval repeated_critical_size(std::size_t runs) const;

@@ -26,8 +26,8 @@ namespace shearcell {
 struct FrameRun;  // analysis/frame.hpp
 struct RunValue;
 
-/// Increase this version with every change that may alter a bit of any result. Stored results of
-/// other versions are recomputed. tests/analysis/test_derived_measures.cpp checks some results.
+/// Increase this version if any result may no longer be bit-identical. Stored results of other
+/// versions are recomputed. tests/analysis/test_derived_measures.cpp checks some results.
 inline constexpr std::uint64_t analysis_version = 2;
 
 /// A function measured on one packing, such as g(r): values y at ascending x.
@@ -126,8 +126,8 @@ struct Provider {
   std::string name;
   nlohmann::json parameters = nlohmann::json::object();  ///< settings on which the results depend
   std::vector<Measure> measures = {};  ///< either all are per-grain measures, or none is
-  /// Returns an object with a value for each measure, by name. A curve is {"x", "y"}; a measure of
-  /// each grain is an array. A measure is left out if it cannot be computed, for example because
+  /// Returns an object with a value for each measure, by name. A curve is {"x", "y"}; a per-grain
+  /// measure is an array. A measure is left out if it cannot be computed, for example because
   /// the run has no earlier checkpoint or because the stage is not a shear.
   std::function<nlohmann::json(const MeasureInput& input)> compute = {};
   /// If not 0, the provider needs a second checkpoint, this many cycles earlier.

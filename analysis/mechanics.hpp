@@ -30,7 +30,7 @@ struct Mechanics {
   double rattlers = 0;
   /// Contacts per interior grain that is not a rattler. Contacts with rattlers do not count.
   double coordination_without_rattlers = 0;
-  /// x and y components of the force of all grains on each wall, columns by WallSide [k d].
+  /// Force that the grains exert on each wall [k d]. Rows: x and y; columns: WallSide.
   Eigen::Matrix<double, 2, 4, Eigen::DontAlign> wall_force;
   double elastic_energy = 0;  ///< of all contacts, including walls, per grain [k d^2]
   double kinetic_energy = 0;  ///< per grain, half a time step before the checkpoint [m d^2/s^2]

@@ -191,7 +191,8 @@ std::vector<Provider> motion_providers() {
             {"reversible_percent", "%",
              "interior grains at most 0.01 d from their position one cycle earlier"},
             {"msd_inside_crystal_d2", "d^2",
-             "mean squared displacement of crystalline grains inside a crystal, over 1 cycle"},
+             "mean squared displacement of crystalline grains not next to disordered grains, over "
+             "1 cycle"},
             {"msd_crystal_boundary_d2", "d^2",
              "mean squared displacement of crystalline grains next to disordered grains, over "
              "1 cycle"},

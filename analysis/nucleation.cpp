@@ -119,10 +119,8 @@ Likelihood likelihood(const Shares& amplitudes, double exponent) {
   return sum;
 }
 
-/// Whether the runs show how the rate depends on size. At least one event must have a comparison
-/// run in a smaller cell, and at least one event must have a comparison run in a larger cell. A
-/// comparison run has the same amplitude and nearly the same phi. The size of a cell is its N,
-/// because the number of interior grains differs slightly between seeds of one N.
+/// Whether the runs have the comparison runs that size_exponent() requires. The size of a cell is
+/// its N, because the number of interior grains differs slightly between seeds of one N.
 bool is_bounded(const Shares& amplitudes) {
   bool larger = false, smaller = false;
   for (const auto& [amplitude, shares] : amplitudes) {

@@ -47,8 +47,8 @@ std::vector<DensityBin> density(std::span<const std::vector<double>> groups, std
 
 /// The region of a nucleation rate. The rate is the number of events per cycle and per grain of the
 /// region, as a function of the phi of the region. The grains of the region are at least 1.5 d
-/// (interior) or 4 d (core) from the wall surfaces (packing_fraction.hpp). The cycle of the onset
-/// is the same for both regions.
+/// (interior) or 4 d (core) from the wall surfaces (packing_fraction.hpp). An event is the onset
+/// of a run by method 1 (onset.hpp), which does not depend on the region.
 enum class Region { interior, core };
 /// Name of the measure that counts the grains of the region.
 std::string grains_of(Region region);
@@ -58,14 +58,14 @@ struct NucleationRate {
   double phi_low = 0;
   double phi_high = 0;
   std::size_t events = 0;   ///< number of onsets
-  double grain_cycles = 0;  ///< grains of the region times cycles without onset, sum over all runs
+  double grain_cycles = 0;  ///< sum over runs: (grains in the region) x (cycles without onset)
   double rate = 0;          ///< events per grain and cycle
   Interval interval;        ///< from the Poisson count: F. Garwood, Biometrika 28, 437 (1936)
 };
 
 /// Rates in ascending bins of phi. Bins in which no run spent time are left out. The time between
-/// two checkpoints counts in the bin of the first checkpoint, because a growing crystallite has not
-/// yet raised phi there. Runs that begin with a critical crystallite are left out.
+/// two checkpoints counts in the bin of the first checkpoint, because at this checkpoint a growing
+/// crystallite has not yet raised phi. Runs that begin with a critical crystallite are left out.
 std::vector<NucleationRate> nucleation_rates(RunGroup runs, Region region);
 
 /// Contribution of one run to the rate in one range of phi: the time that the run spends in this
@@ -84,16 +84,16 @@ inline constexpr double rate_step = 0.0005;
 
 /// Maximum-likelihood estimate of the exponent a in rate = c(amplitude, phi) n^a, where n is the
 /// number of grains in the region. Onsets are a Poisson process, and ln c is a parabola in phi for
-/// each amplitude. Since a run has at most one event, the interval comes from the profile
-/// likelihood (D. R. Cox and D. Oakes, Analysis of Survival Data, 1984). It contains all exponents
-/// whose log-likelihood is at most a certain amount below the maximum. If runs share a packing,
-/// this amount is multiplied by a factor of at least 1: the variance of the packings' scores,
-/// divided by the variance expected for independent runs (L. Pace, A. Salvan, N. Sartori,
+/// each amplitude. Since a run has at most one onset, the interval comes from the profile
+/// likelihood (D. R. Cox and D. Oakes, Analysis of Survival Data, 1984). The interval contains all
+/// exponents whose log-likelihood is at most a certain amount below the maximum. If runs share a
+/// packing, this amount is multiplied by a factor of at least 1: the variance of the packings'
+/// scores, divided by the variance expected for independent runs (L. Pace, A. Salvan, N. Sartori,
 /// Stat. Sinica 21, 129 (2011)).
 ///
-/// Empty for fewer than least_runs packings. Also empty unless at least one event has a comparison
-/// run in a cell of fewer grains, and at least one event has a comparison run in a cell of more
-/// grains. A comparison run has the same amplitude and nearly the same phi.
+/// Empty for fewer than least_runs packings. Also empty unless at least one onset has a comparison
+/// run in a cell of fewer grains, and at least one onset has a comparison run in a cell of more
+/// grains. The comparison run has the same amplitude, and passes nearly the phi of the onset.
 std::optional<Estimate> size_exponent(RunGroup runs, Region region,
                                       double level = confidence_level);
 

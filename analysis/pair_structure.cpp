@@ -166,8 +166,8 @@ MeasuredCurve structure_factor(const MeasureInput& input) {
   const Eigen::Matrix3Xd sites = interior_sites(input);
   if (!(region.width > 0 && region.height > 0) || sites.cols() == 0) return {};
   const WaveVector most = largest_components(region);
-  // Limits the computing time if a forged file has a cell far larger than its grains need. In a
-  // real packing, the sum of the components of `most` is at most a third of this limit.
+  // Limits the computing time for a forged file whose cell is far larger than the grains need. In a
+  // real packing, the compared sum is no larger than a third of this limit.
   const double largest_sum = 60 * std::cbrt(static_cast<double>(sites.cols()));
   if (most[0] + most[1] + most[2] > std::max(1000.0, largest_sum)) return {};
   const Eigen::ArrayXd y = sites.row(1).array() - region.bottom;

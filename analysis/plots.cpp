@@ -161,10 +161,9 @@ struct Sample {
   std::vector<double> y = {};  ///< values of the columns in columns_of()
 };
 
-/// One run of a curve and its samples.
 struct Trace : Selected {
   std::vector<Sample> samples = {};    ///< in the order of the checkpoints
-  Missing missing = Missing::nothing;  ///< why y is missing, if y is a measure of the whole run
+  Missing missing = Missing::nothing;  ///< for a measure of the whole run: why y is missing
   /// For each column: the bound RunValue::above if the run ended before the event; otherwise NaN.
   std::vector<double> above = {};
 };
@@ -187,7 +186,6 @@ struct Panel {
   std::vector<Curve> curves = {};
 };
 
-/// `y` and PlotSpec::also.
 std::vector<ColumnSpec> measures_of(const PlotSpec& plot) {
   std::vector<ColumnSpec> all = {{plot.y, plot.column}};
   all.insert(all.end(), plot.also.begin(), plot.also.end());
@@ -338,7 +336,7 @@ void set_look(const SeriesSpec& stated, std::string& colour, int& point) {
 /// the manifest's other plots. A colour is left out if it is given in a plot earlier in this order.
 std::vector<StatedLook> stated_looks(const PlotSpec& plot, const Plots& others) {
   std::vector<StatedLook> looks;
-  std::set<std::string> taken;  // colours given in earlier plots
+  std::set<std::string> taken;  // colours that the manifest gives in earlier plots
   const auto add = [&](const PlotSpec& from) {
     for (const SeriesSpec& one : from.series) {
       if (!one.column.empty()) continue;
@@ -595,7 +593,7 @@ Axis x_axis(const PlotSpec& plot, std::span<const Selected> runs) {
   return {.name = fmt::format("{} of the stiffening", word), .whole = true};
 }
 
-/// The series of a curve, without points.
+/// A series with the title and look of the curve, but without data points.
 Series series_of(const Curve& curve) {
   return {.title = curve.title,
           .colour = curve.look.colour,
@@ -610,8 +608,8 @@ void leave_out_symbol(const Curve& curve, Series& series) {
   series.join = curve.look.join;
 }
 
-/// A thin line or a cloud of points for each run, or for each seed if x has one value per run. Only
-/// the first line or cloud of a curve has a title.
+/// A thin line or a cloud of points for each run. If x has one value per run, the runs of one seed
+/// share a line or cloud. Only the first line or cloud of a curve has a title.
 std::vector<Series> series_of_runs(const Panel& panel) {
   const bool of_run = against(panel.plot) == Against::number_of_run;
   std::vector<Series> all;

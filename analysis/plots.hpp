@@ -30,7 +30,8 @@ template <>
 inline constexpr auto kNames<LogAxes> = names_in_order<LogAxes>("none", "x", "y", "xy");
 
 /// Label, colour and symbol (`marker`) of the curve whose variants have the parameter values in
-/// `where`. If one of these is empty, it is chosen from the swept values (styles.hpp).
+/// `where`. If the label is empty, the curve is named after its variants. If the colour or symbol
+/// is empty, it is chosen from the swept values (styles.hpp).
 struct SeriesSpec {
   nlohmann::json where;     ///< parameter -> value
   std::string column = {};  ///< instead of `where`: the name of a column, if `y` has several
@@ -45,8 +46,8 @@ struct ColumnSpec {
   std::string name = {};  ///< name of the column, without unit; if empty, the measure's name
 };
 
-/// A black point on each curve. Its coordinates are two measures of the whole run, averaged over
-/// the runs of the curve.
+/// A black point on each curve. Its coordinates are two measures that have one value for each run.
+/// These values are averaged over the runs of the curve.
 struct MarkSpec {
   std::string x, y;
   std::string label = {};
@@ -74,8 +75,8 @@ struct PlotSpec {
   std::string xlabel = {}, ylabel = {};  ///< may contain formulas; if empty, made from x and y
   std::vector<SeriesSpec> series = {};
   std::vector<PublishedSpec> published = {};
-  /// Further columns of the CSV. The first `drawn` columns also get a curve. If x and y have one
-  /// value for each run, all these columns are evaluated at the first checkpoint of the run.
+  /// Further columns of the CSV; the first of them (`drawn` is their number) also get a curve. If x
+  /// and y have one value for each run, `also` is evaluated at the first checkpoint of the run.
   std::vector<ColumnSpec> also = {};
   std::size_t drawn = 0;
   std::optional<MarkSpec> mark = {};
@@ -92,7 +93,6 @@ struct PlotSpec {
   bool listed = false;
 };
 
-/// The name of the plot's figure: `figure` if given, otherwise `name`.
 inline const std::string& figure_of(const PlotSpec& plot) {
   return plot.figure.empty() ? plot.name : plot.figure;
 }
@@ -117,7 +117,7 @@ struct Selected {
 
 struct PlotRuns {
   std::vector<Selected> drawn = {};
-  std::vector<const FrameRun*> subtracted = {};  ///< runs with the parameters PlotSpec::minus
+  std::vector<const FrameRun*> subtracted = {};  ///< runs that PlotSpec::minus selects
   /// Runs that are left out, because no run in `subtracted` has the same packing.
   std::vector<const FrameRun*> alone = {};
 };
@@ -147,7 +147,8 @@ using NameVariants = std::function<std::map<nlohmann::json, std::string>(
 /// ... with equal ranges. Runs are averaged in bins of phi if x is phi, at each cycle if x is
 /// another measure, and at one cycle if x is a parameter. A measure that is a curve is drawn at one
 /// cycle. `names` gives the titles of curves; without it a title has the form "fluid=still".
-/// `others`: the plots of the same manifest. Their colours and symbols are also used in this plot.
+/// `others`: the plots of the same manifest. If one of them states a colour or symbol for a
+/// variant, this plot uses it for the same variant.
 Figure plot_figure(const PlotSpec& plot, const NameVariants& names = {}, const Plots& others = {});
 
 /// Words for a message: "2 variants have fluid=still" or "no variant has fluid=still".

@@ -147,8 +147,8 @@ std::vector<Provider> profile_providers() {
                     {"pressure_profile_Pa", "Pa", "mean normal stress of a layer, from contacts",
                      curve, "", "height_d", "d"},
                     {"coordination_profile", "1",
-                     "contacts per grain in a layer, including wall grains", curve, "", "height_d",
-                     "d"},
+                     "contacts per grain of a layer, including contacts with wall grains", curve,
+                     "", "height_d", "d"},
                     {"crystalline_profile_percent", "%", "crystalline grains of a layer", curve, "",
                      "height_d", "d"}},
        .compute = profiles_of},
@@ -163,14 +163,14 @@ std::vector<Provider> profile_providers() {
        .parameters = crystal_criteria(),
        .measures =
            {{"crystalline_by_q6_window_percent", "%",
-             "crystalline grains if the criterion is |q6 - q6 of a lattice| < `q6_window`", curve,
-             "", "q6_window", "1"},
+             "crystalline grains by the criterion |q6 - q6 of a lattice| < `q6_window`", curve, "",
+             "q6_window", "1"},
             {"crystalline_by_phi_local_percent", "%",
-             "crystalline grains if the criterion is phi_local > `phi_local_threshold`", curve, "",
+             "crystalline grains by the criterion phi_local > `phi_local_threshold`", curve, "",
              "phi_local_threshold", "1"},
             {"largest_by_face", "1",
-             "grains in the largest crystallite if grains are connected by a face of at least "
-             "`connecting_face` (area divided by the mean cell surface)",
+             "grains in the largest crystallite, connected by faces of at least `connecting_face` "
+             "(area divided by the mean surface of a Voronoi cell)",
              curve, "", "connecting_face", "1"}},
        .compute = sensitivity_of}};
 }

@@ -54,14 +54,14 @@ inline constexpr std::int32_t nucleus_largest = 25;
 
 // Margins: two results agree if they differ by less than the margin. The margins of the figures
 // in analysis/figures are defined here; all other margins are in manifests. Margins are chosen
-// before the runs are made. The uncertainty of a published critical size is part of the interval,
-// not of the margin (README.md).
+// before the runs are made. The uncertainty of a published critical size widens the interval of the
+// verdict, not the margin (README.md).
 
 /// Margin of the critical size, relative to the published size. Published sizes of neighbouring
 /// amplitudes differ by a quarter.
 inline constexpr double margin_critical_size = 0.25;
-/// Margin of the difference between the shares of nuclei in two parts of the cell. The smallest
-/// difference that can be seen in Fig. S7 is the one between 60 % and 40 %.
+/// Margin for the shares of nuclei in two parts of the cell: the smallest difference that can be
+/// seen in Fig. S7 (60 % in one part and 40 % in the other).
 inline constexpr double margin_share = 0.2;
 
 }  // namespace shearcell

@@ -113,10 +113,10 @@ std::vector<Provider> run_providers() {
                      "mean kinetic energy of a grain of mass m"},
                     {"wall_force_imbalance", "1",
                      "load minus contact force on the moving wall, divided by P A_w"},
-                    {"raised_stiffness_N_per_m", "N/m", "spring constant during a stiffening"},
+                    {"raised_stiffness_N_per_m", "N/m", "spring constant in a stiffening stage"},
                     {"force_residual_P_d2", "P d^2",
-                     "largest net force on a grain at a checkpoint of a stiffening, "
-                     "divided by P d^2"}},
+                     "largest net force on a grain, divided by P d^2, at a checkpoint of a "
+                     "stiffening stage"}},
        .compute = record_of,
        .from = ComputedFrom::record},
       {.name = cost_provider,

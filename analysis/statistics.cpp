@@ -28,7 +28,7 @@ Interval around(double value, double error, double freedom, double level) {
   return {value - half, value + half};
 }
 
-/// Draws samples of `chosen` runs each. Returns the statistic of each; NaN is left out.
+/// Draws samples with `chosen` runs. Returns the statistic of each sample; NaN is left out.
 std::vector<double> bootstrap_values(std::size_t runs, std::size_t chosen,
                                      const RunStatistic& statistic) {
   std::vector<std::size_t> selection(chosen);
@@ -314,8 +314,8 @@ std::optional<Estimate> log2_wait_ratio(std::span<const Waiting> a, std::span<co
   const std::vector<double> edges(factors.begin(), factors.end());
   const double limit = student_quantile(upper(level), static_cast<double>(a.size() + b.size() - 2));
   std::vector<Waiting> scaled(b.begin(), b.end());
-  double negative = edges.front();  // the statistic is negative below this factor
-  double positive = edges.back();   // the statistic is positive above this factor
+  double negative = edges.front();  // upper end of the factors with a negative statistic
+  double positive = edges.back();   // lower end of the factors with a positive statistic
   Interval kept{infinite, -infinite};
   // Each interval: before the first edge, between two edges, and after the last edge.
   for (std::size_t k = 0; k <= edges.size(); ++k) {

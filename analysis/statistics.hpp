@@ -28,9 +28,9 @@ RunStatistics rms_over_runs(std::span<const double> values);
 /// Slope of the least-squares line of y against x; NaN if all x are equal.
 double least_squares_slope(std::span<const std::pair<double, double>> points);
 
-/// Computes a number from a sample of runs, in which a run may occur several times; NaN if the
-/// sample has no such number. The bootstrap draws 1000 samples with replacement. The random numbers
-/// are counter-based, so the same input gives the same values.
+/// Computes a statistic of a sample from the indices of its runs; NaN if it is undefined. A run may
+/// occur several times, since the bootstrap draws 1000 samples with replacement. The random numbers
+/// of the bootstrap are counter-based, so the same input gives the same samples.
 using RunStatistic = std::function<double(std::span<const std::size_t>)>;
 
 /// Standard error of a statistic: its standard deviation over the bootstrap samples, multiplied by
@@ -38,7 +38,7 @@ using RunStatistic = std::function<double(std::span<const std::size_t>)>;
 /// or if fewer than half of the samples have a finite value.
 std::optional<double> bootstrap_error(std::size_t runs, const RunStatistic& statistic);
 
-/// Confidence level of intervals unless a level is given. To require that a 90 % interval lies
+/// Confidence level of intervals unless a level is given. Requiring that a 90 % interval lies
 /// between -margin and margin is equivalent to two one-sided tests at 5 %: Schuirmann,
 /// J. Pharmacokinet. Biopharm. 15, 657 (1987).
 inline constexpr double confidence_level = 0.9;
@@ -75,7 +75,7 @@ Estimate mapped(Estimate estimate, const std::function<double(double)>& increasi
 double student_quantile(double probability, double freedom);
 double normal_quantile(double probability);
 
-/// Mean of `values`, with Student's interval mean +- t s / sqrt(n). Each run or pair of runs gives
+/// Mean of `values`, with Student's interval: mean +- t s / sqrt(n). Each run or pair of runs gives
 /// one value.
 std::optional<Estimate> mean_of(std::span<const double> values, double level = confidence_level);
 
@@ -97,16 +97,16 @@ std::optional<Estimate> bootstrapped(std::size_t runs, const RunStatistic& stati
 /// runs. Unbounded if `runs` is less than least_bootstrap_runs.
 Interval repetitions(std::size_t runs, std::size_t chosen, const RunStatistic& statistic);
 
-/// Standard deviation between the true means of groups in a one-way random-effects model.
+/// Standard deviation of the true means of groups in a one-way random-effects model.
 struct SpreadBetween {
   double value = 0;        ///< sqrt((variance between groups - variance within) / group size)
   double upper_limit = 0;  ///< exceeds the true value with the probability (1 + level) / 2
   double f = 0;            ///< variance ratio; about 1 if the groups do not differ
 };
 /// Analysis of variance of groups with one value per run. The groups may differ in size: S. R.
-/// Searle, G. Casella and C. E. McCulloch, Variance Components (1992), section 3.6. The upper limit
-/// of the standard deviation is from J. S. Williams, Biometrika 49, 278 (1962). For k groups with n
-/// values in total, the limit is given by
+/// Searle, G. Casella and C. E. McCulloch, Variance Components (1992), section 3.6. `upper_limit`
+/// is from J. S. Williams, Biometrika 49, 278 (1962). For k groups with n values in total, the
+/// limit is given by
 ///
 ///     limit^2 = (k - 1) (MSB - F MSW) / (n0 chi^2)
 ///
@@ -132,7 +132,7 @@ Estimate ratio(const Estimate& a, const Estimate& b);
 std::optional<std::size_t> runs_to_resolve(const Estimate& estimate, double distance,
                                            bool both_sides);
 
-// Waiting times, such as the cycle of the onset. A run that stops before its event is censored.
+// Waiting times, such as the cycle of the onset. A run is censored if it stops before its event.
 
 /// One run: the cycle of the event, or the last cycle if no event was observed (censored).
 struct Waiting {
@@ -146,8 +146,8 @@ struct SurvivalStep {
   double survival = 1;
 };
 
-/// The product-limit estimate, with a step at each cycle of an event: E. L. Kaplan and P. Meier, J.
-/// Am. Stat. Assoc. 53, 457 (1958).
+/// The product-limit estimate, with a step at each cycle that has an event: E. L. Kaplan and P.
+/// Meier, J. Am. Stat. Assoc. 53, 457 (1958).
 std::vector<SurvivalStep> kaplan_meier(std::span<const Waiting> runs);
 
 /// Returns the first cycle after which fewer than half of the runs still wait. If exactly half wait

@@ -22,8 +22,8 @@ json values_of(const json& variant, std::span<const std::string> keys) {
   return values;
 }
 
-/// `count`: number of distinct sets of values that `keys` have in `variants`. `rank`: index of the
-/// variant's set in the sorted list of these sets.
+/// The distinct sets of values that `keys` have in `variants` are sorted. `rank`: index of the set
+/// of `variant`. `count`: number of these sets.
 struct Rank {
   std::size_t rank = 0;
   std::size_t count = 0;
@@ -86,7 +86,7 @@ Look Looks::of(RunGroup curve, const json& key) const {
   std::vector<std::string> in_panel = keys;
   std::erase_if(in_panel, [&](const auto& name) { return std::ranges::count(shared_, name) > 0; });
   StatedLook stated;
-  bool single = false;  // whether the StatedLook with stated.colour matches one curve per panel
+  bool single = false;  // the StatedLook that gives stated.colour matches one curve per panel
   for (const StatedLook& one : stated_) {
     std::set<json> curves, colours;
     for (const json& other : variants_) {
@@ -115,7 +115,7 @@ Look Looks::of(RunGroup curve, const json& key) const {
   Rank first = rank_of(variant, among, of_colour);
   Rank rest = rank_of(variant, among, all.subspan(of_colour.size()));
   // Colour and symbol change together if only one key varies, or if the keys have more values than
-  // there are colours or symbols.
+  // there are colours or symbols. Lines of one colour are solid and dashed in turn.
   bool dashed = rest.rank % 2 == 1;
   if (rest.count <= 1 || first.count > palette.size() || rest.count > curve_symbols) {
     first.rank = rest.rank = first.rank * std::max<std::size_t>(1, rest.count) + rest.rank;
@@ -131,8 +131,8 @@ Look Looks::of(RunGroup curve, const json& key) const {
     const double amplitude = amplitude_of(one);
     return std::abs(published_nearest(amplitude).amplitude_rad - amplitude) < 1e-6;
   };
-  // Whether the palette contains the colour of the amplitude. The palette no longer contains the
-  // colours that are given in the manifest.
+  // Whether the palette still contains the colour of the amplitude. The colours that the manifest
+  // gives were removed from the palette above.
   const auto has_own_colour = [&](const json& one) {
     return std::ranges::count(palette, amplitude_look(amplitude_of(one), 0).colour) > 0;
   };

@@ -71,18 +71,18 @@ std::vector<AmplitudeRuns> by_amplitude(std::span<const FrameRun> runs);
 /// stated colour is not chosen for other variants.
 class Looks {
  public:
-  /// `shared`: keys that do not distinguish the curves of one panel. of() ignores them when it
-  /// decides whether a stated symbol belongs to a single curve.
+  /// `shared`: keys that do not distinguish the curves of one panel. When of() decides whether a
+  /// stated symbol belongs to a single curve, it ignores these keys.
   explicit Looks(const Frame& frame, std::vector<StatedLook> stated = {},
                  std::vector<std::string> shared = {});
 
   /// Colour and symbol of a curve. If all runs of the curve belong to one variant, the swept values
   /// of this variant decide. Otherwise `key` decides: the values that all runs of the curve share.
   ///
-  /// A StatedLook is used under two conditions: the curve has the parameter values in
-  /// StatedLook::where, and the parameter that decides the colour has the same value in all
-  /// variants with the values in StatedLook::where. The curve then has the stated colour. It also
-  /// has the stated symbol, unless StatedLook::where matches other curves of the panel, too.
+  /// A StatedLook is used if the curve has the parameter values in StatedLook::where, and if all
+  /// variants that match StatedLook::where agree in the parameter that decides the colour. The
+  /// curve then has the stated colour. It also has the stated symbol, unless StatedLook::where
+  /// matches other curves of the panel, too.
   Look of(RunGroup curve, const nlohmann::json& key) const;
 
  private:

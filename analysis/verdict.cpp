@@ -27,8 +27,8 @@ std::optional<std::size_t> runs_needed(const Estimate& estimate, double margin, 
   const double size = within ? std::abs(estimate.value) : estimate.value;
   const auto needed = runs_to_resolve(estimate, std::abs(size - margin), false);
   // Estimate::spread is computed from the mean length of the two parts of the interval, below and
-  // above the estimate. If one part is much longer, `needed` may be too small. But an undecided
-  // claim needs at least one more run.
+  // above the estimate. If one part is much longer, `needed` may be too small, even less than the
+  // present number of runs. These runs have not decided the claim, so at least one more is needed.
   return needed ? std::max(*needed, estimate.runs + 1) : needed;
 }
 

@@ -69,11 +69,12 @@ struct Verdict {
   std::size_t groups = 1;                  ///< Estimate::groups
   std::vector<std::size_t> looks = {};     ///< numbers of seeds at the planned interim analyses
   std::size_t look = 0;                    ///< number of seeds at the last look; 0: no look yet
-  /// Probability that a study decides the claim at the next look or at an earlier look, if
-  /// `estimate` is the true value. Empty if the claim is decided, or if only one look is planned.
+  /// Probability that a repetition of this study decides the claim no later than at the next look
+  /// of this study, if `estimate` is the true value. Empty if the claim is decided, or if only one
+  /// look is planned.
   std::optional<double> power = {};
   std::string note;      ///< how the runs were compared, and which runs are missing
-  bool primary = false;  ///< the runs were made to decide this claim
+  bool primary = false;  ///< the manifest lists the claim under `primary`
   Table entered = {};    ///< rows with the numbers that the verdict uses
 };
 
@@ -83,10 +84,10 @@ Ruling ruling_of(const Interval& interval, double margin, Relation claimed);
 
 /// The verdict that follows from the estimate's interval; undecided without an estimate. If the
 /// claim has a reason why it cannot be decided, the verdict is undecidable, with this reason.
-/// `runs_needed`: for an undecided claim, the total number of runs (more than Estimate::runs) that
-/// decides the claim with 90 % probability. The true value is assumed to be 0 (Relation::same) or
-/// twice the margin (other relations). If no more than Estimate::runs runs would be needed under
-/// this assumption, or if the interval excludes 0, the estimate is taken as the true value instead.
+/// `runs_needed`: the value of Verdict::runs, larger than Estimate::runs, that would decide an
+/// undecided claim with 90 % probability. The true value is assumed to be 0 (Relation::same) or
+/// twice the margin (other relations). But if the interval excludes 0, or if the result would not
+/// be larger than Estimate::runs, the estimate is assumed to be the true value.
 Verdict decide(const Claim& claim, std::string quantity, const std::optional<Estimate>& estimate,
                std::size_t runs, std::string note, Table entered = {},
                Counted counted = Counted::runs);
@@ -110,9 +111,9 @@ Table entered_table(std::span<const Verdict> verdicts);
 /// null. The same verdicts give the same bytes.
 nlohmann::json to_json(std::span<const Verdict> verdicts);
 
-/// "0.0012, 90 % interval -0.0003 to 0.0027, margin 0.001, 6 runs per variant (24 needed)". For
-/// waiting times: "the events of the first group come 2.1 times later, 90 % interval 1.3 times
-/// later to 3.4 times later, margin: twice, 6 runs per variant".
+/// "0.0012, 90 % interval -0.0003 to 0.0027, margin 0.001, 6 runs per variant (24 needed)". Here
+/// 24 runs per variant are needed. For waiting times: "the events of the first group come 2.1 times
+/// later, 90 % interval 1.3 times later to 3.4 times later, margin: 1.5 times, 6 runs per variant".
 std::string numbers_of(const Verdict& verdict);
 
 /// The quantity, numbers_of() and the note, as the terminal and the report print them:

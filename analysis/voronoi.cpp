@@ -71,8 +71,7 @@ std::size_t corner_of(const Tetrahedron& t, std::int32_t vertex) {
 ///
 /// A face is the polygon of the circumcentres around an edge, clipped by the walls. All faces that
 /// meet in a circumcentre use the same coordinates for the circumcentre. They also agree on whether
-/// the circumcentre lies beyond a wall. So the cells fit together without gaps. Polygon sides on a
-/// wall are the borders of the cells' faces on that wall.
+/// the circumcentre lies beyond a wall. So the cells fit together without gaps.
 ///
 /// The guards are eight additional points at the corners of a large cube, so that every cell is
 /// bounded. They are farther away in z than any periodic image that a cell may need. So no cell
@@ -244,8 +243,8 @@ class Tessellation {
     const double determinant = a.dot(bc);
     const Eigen::Vector3d v = (aa * bc + bb * c.cross(a) + cc * a.cross(b)) / (2 * determinant);
 
-    // Forward error of Cramer's rule. The errors of numerator and determinant are a few roundoffs
-    // (fewer than 32 by a count of the operations) times the sum of the magnitudes of their terms.
+    // Forward error of Cramer's rule. A count of the operations shows that the errors of numerator
+    // and determinant are below 32 roundoffs times the sum of the magnitudes of their terms.
     constexpr double roundoff = std::numeric_limits<double>::epsilon() / 2;
     const double radius = v.norm();
     const double la = std::sqrt(aa);
@@ -339,9 +338,9 @@ class Tessellation {
   /// Clips the face between a and b at the walls in `beyond`. Returns twice the vector area of the
   /// remaining polygon. A side of this polygon that lies on a wall is also part of the borders of
   /// two wall faces, one of a's cell and one of b's cell. The side contributes to the areas of both
-  /// wall faces: the area of a wall face is the integral of -z du along its border, where u is the
-  /// coordinate along the wall, normal to z. Borders along an edge of the box contribute nothing,
-  /// because du is 0 there.
+  /// wall faces: the area of a wall face is the integral of -z du along its border, where u and z
+  /// are perpendicular coordinates in the wall plane. Borders along an edge of the box contribute
+  /// nothing, because du is 0 there.
   Eigen::Vector3d clip(std::size_t start, std::int32_t a, std::int32_t b, unsigned beyond) {
     polygon_.clear();
     walk_around(start, a, b, [&](const Tetrahedron& t, std::uint8_t) {
@@ -473,7 +472,7 @@ Eigen::Matrix3Xd wrapped_sites(const Cell& cell, const WallPose& pose,
   for (Eigen::Index i = 0; i < sites.cols(); ++i) {
     double& z = sites(2, i);
     z -= cell.depth * std::floor(z / cell.depth);
-    if (z >= cell.depth) z = 0;  // a tiny negative z rounds up to a whole period
+    if (z >= cell.depth) z = 0;  // if z was tiny and negative, z + depth is rounded to depth
   }
   return sites;
 }

@@ -44,8 +44,8 @@ struct VoronoiDiagram {
 /// order of kind, neighbour and image. Faces of at most 1e-13 d^2 are rounding errors and left out.
 ///
 /// Throws AnalysisError if two sites coincide, or if a grain is on or outside a wall plane; the
-/// message then names these grains. Also throws AnalysisError if a position is not finite or the
-/// cell has no volume.
+/// message then names these grains. Also throws AnalysisError if a position is not finite, or
+/// if the sheared box has no volume.
 VoronoiDiagram voronoi(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd& grains);
 
 /// Sites for neighbour searches: grains, then wall grains, with z wrapped into one period.

@@ -15,9 +15,9 @@ void CellOrder::choose_strip(std::size_t sites) {
   const double line = static_cast<double>(sites) / (1.0 * cells.rows * cells.layers);
   const double strip = std::min(std::max(kSitesPerRow / line, 3.0), 1.0 * cells.layers);
   cells.strip = static_cast<std::int32_t>(strip);
-  // A row has `strip` lines of cells along x. The prefetch distance is the average number of sites
-  // in `strip` + 2 lines, times 1.2 to allow for rows with more sites. With fewer than kSmall
-  // sites, all sites fit in the cache, so nothing is prefetched.
+  // A row consists of `strip` lines of cells, and each line is parallel to x. The prefetch distance
+  // is the average number of sites in `strip` + 2 lines, times 1.2 because some rows have more
+  // sites. With fewer than kSmall sites, all sites fit in the cache, so nothing is prefetched.
   constexpr std::size_t kSmall = 4000;
   const double ahead = sites < kSmall ? 0 : 1.2 * line * (cells.strip + 2);
   ahead_ = padded(static_cast<std::size_t>(ahead));

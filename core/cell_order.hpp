@@ -30,7 +30,7 @@ class CellOrder {
   const CellGrid& grid() const { return grid_; }
   std::size_t size() const { return site_.size(); }
   /// In the sorted order, the last neighbour of a site is about this many sites after it. A
-  /// multiple of 8; 0 for a cell that fits in the cache of a core.
+  /// multiple of 8; 0 if all sites fit in the cache of a core.
   std::size_t ahead() const { return ahead_; }
   /// Index of each sorted site in the unsorted list of sites that build() received.
   const std::vector<std::int32_t>& site() const { return site_; }

@@ -24,7 +24,7 @@ struct Contact {
 };
 
 /// Calls visit(contact) for every contact of `grains` (3 x N positions [d], z unwrapped), in
-/// ascending Contact::grain. A pair of grains is visited once, with grain < other.
+/// ascending order of Contact::grain. A pair of grains is visited once, with grain < other.
 void for_each_contact(const Cell& cell, const Eigen::Matrix3Xd& grains, const WallPose& pose,
                       const std::function<void(const Contact&)>& visit);
 

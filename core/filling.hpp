@@ -43,9 +43,9 @@ double fill_height(const Geometry& geometry);
 /// Expected number of wall grains; 0 for smooth walls.
 double wall_grain_count(const Geometry& geometry);
 
-/// Whether the cell is too large for its grains. This is true if the width or height exceeds
-/// kLongestCell, if V / (N + 100) exceeds half of kLoosestCell (the moving wall may still move
-/// outwards), or if there are more than 10^4 + 1000 N wall grains (each may need 6000 attempts).
+/// Whether the cell is too large for its grains: if the width or height exceeds kLongestCell, if
+/// V / (N + 100) exceeds half of kLoosestCell (half, because the moving wall may move outwards), or
+/// if there are more than 10^4 + 1000 N wall grains (each may need 6000 attempts).
 bool too_large(const Geometry& geometry);
 
 /// Makes a cell of height fill_height(). The wall grains of rough walls are placed by random

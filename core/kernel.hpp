@@ -83,7 +83,7 @@ struct StepTask {
   /// Prefetch distance in rows, see CellOrder::ahead(); 0 disables the prefetch.
   std::size_t ahead = 0;
   double* next_rows = nullptr;  ///< output: positions at the next step
-  /// Velocities [d/s], half a step before the time of `rows` (input) or after that time (output).
+  /// Velocities [d/s]. Input: half a step before the time of `rows`. Output: half a step after it.
   double* velocity[3] = {};
   double velocity_factor = 0;    ///< (1 - b dt / 2m) / D
   double contact_kick = 0;       ///< dt k/m / D [1/s]

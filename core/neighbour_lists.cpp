@@ -67,9 +67,9 @@ double Reference::moved(const double* rows, std::size_t grain, const WallPose& p
 
 double Reference::wall_moved(const WallPose& pose) const {
   // The side walls follow the shear displacement, which is zero at the top wall. Grains of the
-  // bottom wall move in x with the bottom plane, whatever their height. The displacement of a grain
-  // up to d behind the plane therefore differs from the shear displacement at the height of the
-  // grain by at most d times the change of tan(theta).
+  // bottom wall move in x with the bottom plane, whatever their height. A wall grain is at most d
+  // away from the plane. So its displacement differs from the shear displacement at its own height
+  // by at most d times the change of tan(theta).
   const double travel =
       std::max(std::fabs(pose.bottom - pose_.bottom), std::fabs(pose.top - pose_.top));
   return travel * (1 + std::fabs(pose.tan_theta)) + std::fabs(pose.tan_theta - pose_.tan_theta);
@@ -78,7 +78,7 @@ double Reference::wall_moved(const WallPose& pose) const {
 double Reference::margin_loss(double tan_theta) const {
   // A simple shear by e multiplies each distance by at least the smallest singular value of the
   // shear, sqrt(1 + e^2/4) - e/2 > 1 - e/2. So the distance 1 + 2 widest_ decreases by at most the
-  // fraction e/2. Half of this loss is subtracted from the margin of each of the two grains.
+  // fraction e/2. Half of this loss is subtracted from the margin of each grain of the pair.
   return 0.25 * std::fabs(tan_theta - pose_.tan_theta) * (1 + 2 * widest_) + rounding_ + 1e-9;
 }
 
@@ -169,9 +169,10 @@ bool NeighbourLists::prune(const Snapshot& now) {
   return true;
 }
 
-// The outer lists must contain each pair whose distance is less than 1 plus its two inner margins.
-// So the inner margin of a grain or of the walls is at most the outer margin minus the movement so
-// far. Returns false if this limit is less than settings_.inner_margin() for a grain or the walls.
+// The outer lists must contain each pair whose distance is less than 1 plus the inner margins of
+// both partners. So an inner margin is at most the outer margin minus the movement and
+// margin_loss() since the outer lists were built. Returns false if this limit is below
+// settings_.inner_margin() for a grain or the walls.
 bool NeighbourLists::set_inner_margins(const Snapshot& now) {
   const double least = settings_.inner_margin();
   const double horizon = kInnerHorizon * now.time_step;

@@ -40,7 +40,7 @@ struct ListSettings {
 /// Two grains that are not listed as neighbours were at least 1 + m_i + m_j apart, where m_i and
 /// m_j are their margins. They cannot touch until one of them has moved in this frame by more than
 /// its margin minus margin_loss(). So the movement of each grain is compared with its own margin
-/// only. The wide margin of a fast grain adds only pairs that contain this grain to the lists.
+/// only. The wide margin of a fast grain adds to the lists only pairs that contain this grain.
 class Reference {
  public:
   /// Stores the present positions and the present pose. `widest` is the largest margin [d].
@@ -54,8 +54,7 @@ class Reference {
   /// positions.
   double margin_loss(double tan_theta) const;
 
-  /// Height [d] of the top wall at set(). At this height, the frame that moves with the shear has
-  /// zero velocity.
+  /// Height [d] of the top wall at set(). The shear displacement is zero at this height.
   double frame_height() const { return pose_.top; }
   /// One coordinate of all grains in the untilted frame [d], in single precision.
   const float* data(std::size_t axis) const { return at_[axis].data(); }

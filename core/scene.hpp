@@ -27,10 +27,10 @@ constexpr double fluid_share(Fluid fluid) {
   return 0;
 }
 
-/// The wall on which the pressure is P. `moving_wall`: the load on the moving wall is P A_w. A
-/// moving bottom wall also carries the weight of the grains, so the pressure on the top wall is
-/// below P. `top`: the load on a moving bottom wall is P A_w plus the weight of the grains. The
-/// pressure on the top wall is then P, or less if rough side walls carry a part of the load.
+/// The wall on which the pressure is P. `moving_wall`: the load on the moving wall is P A_w. If the
+/// bottom wall moves, part of this load balances the weight of the grains, so the pressure on the
+/// top wall is below P. `top`: the load on a moving bottom wall is P A_w plus the weight of the
+/// grains. The pressure on the top wall is then P, or less if rough side walls carry load.
 enum class PressureAt : std::uint8_t { moving_wall, top };
 template <>
 inline constexpr auto kNames<PressureAt> = names_in_order<PressureAt>("moving_wall", "top");
@@ -39,7 +39,7 @@ struct Scene {
   double stiffness = 0;  ///< k/m [1/s^2]
   double drag_rate = 0;  ///< b/m [1/s]
   double gravity = 0;    ///< g/d [1/s^2]; 0 switches gravity off
-  double pressure = 0;   ///< P d/m [1/s^2], the force on a wall area of d^2
+  double pressure = 0;   ///< P d/m [1/s^2]
   PressureAt pressure_at = PressureAt::top;
   double wall_mass = 10;    ///< M_w per d^2 of wall [m]
   double wall_drag = 1000;  ///< B_w per d^2 of wall [m/s]

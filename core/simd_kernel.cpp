@@ -49,7 +49,7 @@ HWY_INLINE V exact_beyond(V s, V series) {
   return hn::IfThenElse(hn::Gt(s, hn::Set(kD, kSeriesEnd)), exact, series);
 }
 
-// For each grain in `own`, the separation from the neighbour in one slot of its list.
+// For each grain in `own`, the separation from the neighbour in one slot of the grain's list.
 template <bool kSeam>
 HWY_INLINE Vectors load_slot(const Vectors& own, const double* HWY_RESTRICT rows,
                              const std::int32_t* HWY_RESTRICT list, V depth, V per_depth) {
@@ -141,7 +141,7 @@ HWY_INLINE V raise_excess(V excess, const StepTask& t, std::size_t g, const Vect
   return hn::IfThenElse(real, hn::Max(excess, hn::NegMulAdd(room, room, moved)), excess);
 }
 
-// Contact sums of one block of grains [d].
+// For each grain of one block, the sum of the overlap vectors of its contacts [d].
 HWY_INLINE Vectors contact_sum(const StepTask& t, std::size_t block, const Vectors& own, V depth,
                                V per_depth) {
   Vectors sum{hn::Zero(kD), hn::Zero(kD), hn::Zero(kD)};

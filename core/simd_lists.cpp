@@ -36,10 +36,10 @@ HWY_INLINE std::size_t store_selected(hn::Vec<Offsets> values, hn::Mask<D> mask,
   return hn::CountTrue(kD, mask);
 }
 
-// Writes the row offsets of the ids to `outer`, in ascending id. The rank of an id is the number of
-// smaller ids. Nearly every list fits in two vectors. Each id is compared with two vectors of ids
-// even if the list is shorter, because a branch on the length would be mispredicted. `ids` must
-// have room for two vectors after its last entry.
+// Writes the row offsets of the ids to `outer`, in ascending order of the ids. The rank of an id is
+// the number of smaller ids. Nearly every list fits in two vectors. Each id is compared with two
+// vectors of ids even if the list is shorter, because a branch on the length would be mispredicted.
+// `ids` must have room for two vectors after its last entry.
 HWY_INLINE void write_sorted(const SearchTask& t, std::int32_t* HWY_RESTRICT ids, std::size_t count,
                              std::int32_t* HWY_RESTRICT outer) {
   const hn::ScalableTag<std::int32_t> d;

@@ -223,7 +223,7 @@ void Simulation::zero_slowest_velocities() {
 }
 
 void Simulation::check() const {
-  // If no neighbour lists were built, no step was computed, and the loaded state has not changed.
+  // The first step builds the neighbour lists. Without lists, the loaded state is still unchanged.
   if (counts_.builds > 0) watch(settings_.limits, 0);
 }
 

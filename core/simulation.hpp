@@ -72,8 +72,8 @@ class Simulation {
   /// std::invalid_argument if the number of grains differs.
   void set_state(const State& state);
 
-  /// Forces at the present positions, without drag and with upright walls. They have the same bits
-  /// as in a time step. After steps with tilted walls, call set_state() first. The returned
+  /// Forces at the present positions, without drag and with upright walls. The forces have the same
+  /// bits as in a time step. After steps with tilted walls, call set_state() first. The returned
   /// reference is valid until the next call.
   const Forces& forces();
 

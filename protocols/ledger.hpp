@@ -29,12 +29,12 @@ struct Ledger {
 
 /// Simulates `steps` steps from `start` and takes a sample every `stride` steps. Integrates the
 /// work by the trapezoidal rule, and the losses by the rectangle rule with the sample at the end of
-/// each interval. A sample takes as long as 15 steps, because it finds the wall contacts without
-/// neighbour lists. Throws NumericalFailure.
+/// each interval. Computing a sample takes about as long as computing 15 steps, because the wall
+/// contacts are found without neighbour lists. Throws NumericalFailure.
 ///
 /// Measured for one cycle at the time step of Table I (45600 steps), A = 0.1, N = 600 and 5200: the
-/// error is at most 0.6 % of the dissipation for strides 1 and 8, and 1 % for stride 16. A ledger
-/// takes 3 to 4 times as long as the cycle alone for stride 8, and 2 to 3 times for stride 16.
+/// error is at most 0.6 % of the dissipation for strides 1 and 8, and 1 % for stride 16. With
+/// stride 8, a ledger takes 3 to 4 times as long as the cycle alone; with stride 16, 2 to 3 times.
 Ledger ledger(const Cell& cell, const Scene& scene, const Drive& drive, const State& start,
               std::uint64_t steps, std::uint64_t stride = 1);
 

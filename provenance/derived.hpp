@@ -49,8 +49,8 @@ class DerivedCache {
   /// Contents of the objects, in the order of `keys`; nothing for an object that is not stored.
   std::vector<std::optional<std::vector<std::byte>>> get(std::span<const DerivedKey> keys);
 
-  /// The digests of those objects of the checkpoint that get() would return. With `damaged_too`,
-  /// the result also has the value "" for each damaged object. Empty if the cache cannot be read.
+  /// The digests of the undamaged objects of the checkpoint. With `damaged_too`, the result also
+  /// has the value "" for each damaged object. Empty if the cache cannot be read.
   Digests digests(const std::string& checkpoint, bool damaged_too = false);
 
   /// Stores all objects or, after an error, none. Replaces objects with the same keys.

@@ -86,7 +86,7 @@ void require_own_schema(sqlite::Database& database) {
     const bool derived = std::ranges::count(projected_tables, name) > 0;
     if (older && derived && sql.starts_with("CREATE TABLE ")) continue;
     throw StoreDamaged(fmt::format(
-        "{}: the database contains '{}', which is not part of schema {}; restore it from a backup",
+        "{}: the database has '{}', which is not part of schema {}; restore the file from a backup",
         database.name(), name, kSchemaVersion));
   }
 }
@@ -109,7 +109,7 @@ void require_known_schema(sqlite::Database& database) {
 
 /// Migrates an older schema to the newest in one transaction, so an interrupted migration leaves
 /// the older schema. The table `events` is not changed. Schema 2 added leases. Schema 3 added the
-/// newest manifests and, for each run, what its experiments request and why the run has ended.
+/// newest manifest of each experiment and scale, what is requested of a run, and why a run ended.
 void migrate(sqlite::Database& database) {
   if (database.integer("PRAGMA user_version") == kSchemaVersion) return;
   sqlite::WriteTransaction lock(database);

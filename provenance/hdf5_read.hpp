@@ -28,7 +28,7 @@ inline constexpr const char* kFrameTitle = "shearcell checkpoint 1\n";
 /// Version of the layout of /restart.
 inline constexpr std::uint64_t kRestartFormat = 1;
 
-/// The text in a checkpoint's frame, without padding. `sha256`: hash of all bytes after the frame.
+/// The two lines of text in a frame, without padding. `sha256`: hash of all bytes after the frame.
 inline std::string frame_text(const std::string& sha256) {
   return kFrameTitle + ("sha256 of all bytes after the first 512: " + sha256 + "\n");
 }

@@ -16,8 +16,8 @@ namespace shearcell::hdf5 {
 
 /// A lock for the HDF5 library, which may be built without thread safety. Create a Library object
 /// before any call. The library then prints no errors; require() throws an exception instead. The
-/// constructor throws std::bad_alloc if `room` bytes cannot be allocated, because the library may
-/// crash when memory runs out.
+/// library may crash when memory runs out. So the constructor tests whether `room` bytes can be
+/// allocated, and throws std::bad_alloc if not.
 class Library {
  public:
   explicit Library(std::size_t room = 0) {

@@ -70,7 +70,7 @@ std::optional<std::uint64_t> start_of(std::uint64_t pid) {
   std::string line;
   if (!std::getline(file, line)) return std::nullopt;
   // The second field is the program's name in parentheses and may contain any character, also ')'.
-  // So the line is read from behind its last ')', where the third field begins.
+  // So the third field begins after the last ')' of the line.
   std::istringstream rest(line.substr(line.rfind(')') + 1));
   const std::vector<std::string> fields(std::istream_iterator<std::string>(rest), {});
   constexpr std::size_t kState = 0, kStart = 19;  // indices of fields 3 and 22 of the line

@@ -9,7 +9,7 @@
 namespace shearcell {
 
 struct StoreLimits {
-  static constexpr std::uint64_t grains = 100'000'000;  ///< grains or wall grains of a checkpoint
+  static constexpr std::uint64_t grains = 100'000'000;  ///< grains (and wall grains) per checkpoint
   static constexpr std::size_t observables = 1'000;     ///< observables of a checkpoint
   static constexpr std::uint64_t cycles = 1'000'000;    ///< cycles in a run or checkpoint interval
   static constexpr std::size_t text = 4'096;            ///< length of a run id or a name [bytes]

@@ -130,7 +130,7 @@ std::vector<RunLineage> run_lineage(const Store& store, const std::string& id) {
       std::visit(LineageBuilder(stage, event), events::decode(event));
     }
     std::erase_if(stage.checkpoints, [](const CheckpointHistory& c) {
-      return c.recorded_at.empty() && !c.attempt;  // only in a forged table
+      return c.recorded_at.empty() && !c.attempt;  // no event: the table was changed by hand
     });
     for (Attempt& attempt : stage.attempts) {
       if (!attempt.from_checkpoint.empty() || stages.empty()) continue;

@@ -84,8 +84,8 @@ void add_run_lineage(const Store& store, const std::string& id, RunLineages& lin
 /// Processor time of a stage, and the names of the processors.
 struct ComputingTime {
   /// Processor time of all attempts [s]. The steps after the last recorded checkpoint of an attempt
-  /// are not counted. Events of earlier versions, and of LAMMPS under mpirun, have no processor
-  /// time. Their wall-clock time, multiplied by the number of processes, is added instead.
+  /// are not counted. Attempts of earlier program versions, and of LAMMPS under mpirun, recorded no
+  /// processor time. For such attempts, wall-clock time times the number of processes is added.
   double core_seconds = 0;
   std::set<std::string> processors;  ///< names of the processors that computed the steps
 };

@@ -52,8 +52,8 @@ void require_agreement(const Database& into, const std::string& name,
                        const std::vector<Source>& sources) {
   using Step = std::pair<std::string, std::uint64_t>;  // run and step
   using States = std::set<std::string>;
-  // Each value ends with the name of a store. In `runs`, it is the first store that has the run. In
-  // `states`, it is the first store that has a state of the key's run at the key's step.
+  // The string in each value is the name of a store: in `runs`, the first store that has the run;
+  // in `states`, the first store that has a state of the run at this step.
   std::map<std::string, std::pair<Stage, std::string>> runs;
   std::map<Step, std::pair<States, std::string>> states;
   const auto compare = [&](const Database& tables, const std::string& store) {
@@ -85,8 +85,8 @@ void require_agreement(const Database& into, const std::string& name,
   for (const Source& source : sources) compare(source.tables, source.folder.string());
 }
 
-/// Whether `into` lacks the checkpoint, or has only a damaged file and the source has a valid file.
-/// If `into` has the same state in a file with other bytes (another HDF5 version), returns false.
+/// Whether `into` lacks the checkpoint or has only a damaged file while the source has a valid
+/// file. False if `into` has the same state in a file with other bytes (another HDF5 version).
 bool is_news(const Database& into, const CheckpointRecord& record) {
   Statement same(into,
                  "SELECT count(*), sum(state <> 'rejected') FROM checkpoints WHERE run = ? AND "
@@ -97,7 +97,7 @@ bool is_news(const Database& into, const CheckpointRecord& record) {
   return same.u64(1) == 0 && (!damaged_here || record.state == CheckpointState::recorded);
 }
 
-/// The checkpoints of the source whose files must be copied.
+/// The source's checkpoints whose files must be copied.
 std::vector<CheckpointRecord> needed_objects(const Database& into, const Source& source) {
   auto needed = query_all_checkpoints(source.tables);
   std::erase_if(needed, [&](const CheckpointRecord& record) {
@@ -126,7 +126,7 @@ using Stream = std::vector<const Event*>;  // in the order of the log
 struct RunMerge {
   std::optional<Stage> before;       ///< the run in the store before the merge
   std::optional<Event> last_claim;   ///< last event in the store that began or ended an attempt
-  std::set<std::string> known;       ///< SHA-256 of checkpoints that are not new
+  std::set<std::string> known;       ///< SHA-256 of checkpoints for which is_news() is false
   std::set<std::uint64_t> attempts;  ///< seq (in the source) of the events of copied attempts
   /// Whether the source has a later step of the run than the store, or the same step and a state
   /// that is later in StageState. True if the store does not have the run.
@@ -152,14 +152,14 @@ struct RunMerge {
   std::optional<Event> closing_event(const Database& into) const {
     if (!before || source_wins || attempts.empty() || !last_claim) return std::nullopt;
     const StageState now = query_stage(into, before->id).value().state;
-    // A completed run becomes `declared` if more cycles are requested. This change is kept.
+    // A completed run for which more cycles are requested becomes `declared` and stays `declared`.
     const bool more_to_do = before->state == StageState::completed && now == StageState::declared;
     if (now == before->state || more_to_do) return std::nullopt;
     return last_claim;
   }
 };
 
-/// The sequence numbers (seq) of all events of the attempts that must be copied.
+/// For all attempts that must be copied: the sequence numbers (seq) of their events.
 std::set<std::uint64_t> attempts_to_take(const Stream& stream, const RunMerge& plan) {
   std::set<std::uint64_t> taken, attempt;
   bool news = false;

@@ -128,8 +128,8 @@ class Projector {
         "'declared', state), target_cycles = max(target_cycles, excluded.target_cycles)",
         id_, event_.seq, d.parent, d.kind, d.resolved.dump(), d.grains, ask.target_cycles,
         event_.recorded_at);
-    // A repeated declaration with no larger target and the same checkpoint interval sets `ordinal`.
-    // This makes the run the last one of its place (see holds_place()).
+    // A repeated declaration sets `ordinal` only if it does not raise the target and does not
+    // change the checkpoint interval. The run is then the last one of its place (holds_place()).
     run("INSERT INTO memberships VALUES(?,?,?,?,?,?,?,?,?,?,?,?) ON CONFLICT DO UPDATE SET "
         "ordinal = iif(excluded.target_cycles <= target_cycles AND excluded.checkpoint_every = "
         "checkpoint_every, excluded.ordinal, ordinal), "
@@ -165,8 +165,8 @@ class Projector {
 
   void operator()(const events::RunCompleted& e) const {
     const json ended = member_of(e.summary, "ended"), asked = member_of(ended, "memberships");
-    // The run is not complete if its target was raised during the computation. If the condition
-    // `until` ended the run early, the run is also not complete if another experiment requested it
+    // The run is not complete if its target was raised during the computation. A run that the
+    // condition `until` ended early is also not complete if another experiment requested the run
     // during the computation, because that experiment may need more cycles.
     run("UPDATE runs SET error = '', ends = json_insert(ends, '$[#]', json(?2)), state = "
         "iif(target_cycles > ?3 OR ?4 < (SELECT count(*) FROM memberships WHERE run = ?1), "
@@ -243,8 +243,8 @@ class Projector {
 
   /// Called after checkpoint `sha256` was recorded, rejected or regenerated. Copies cycle, step and
   /// state hash from the last recorded checkpoint of the run to the run. Does nothing if the run
-  /// has reached a later step than that of checkpoint `sha256`, so that the run is not set back if
-  /// the checkpoint at the later step has been pruned.
+  /// has already reached a later step than that of checkpoint `sha256`. The checkpoint at the later
+  /// step may have been pruned, and the run must not be set back.
   void move_to_furthest_from(const std::string& sha256) const {
     run("UPDATE runs SET (cycle, step, state_hash) = (SELECT coalesce(max(cycle), 0), "
         "coalesce(max(step), 0), coalesce(max(state_hash), '') FROM (SELECT * FROM checkpoints "

@@ -28,7 +28,7 @@ extern const char* const projection_tables;
 sqlite::Database empty_projections(const std::string& name);
 
 /// Applies one event to the tables; no other code writes to them. An event of unknown type changes
-/// at most updated_at of a run. Throws StoreDamaged when the payload lacks a required member.
+/// only updated_at of its run. Throws StoreDamaged when the payload lacks a required member.
 void apply(sqlite::Database& database, const Event& event);
 /// Applies the event. Then checks that the event has a time, and that a registered manifest or file
 /// of grain positions has the recorded SHA-256. Returns a description of what is wrong, or "".
@@ -54,8 +54,8 @@ NotFound unknown_stage(std::string_view id);
 NotFound unknown_checkpoint(std::string_view run, std::string_view sha256);
 
 /// Whether `wanted` adds something to the stored stage `known`. It adds nothing if a membership of
-/// `known` has the same place, the same checkpoint interval, and a target at least as large. True
-/// if `known` is empty.
+/// `known` has the place and the checkpoint interval of `wanted`, and a target at least as large as
+/// that of `wanted`. True if `known` is empty.
 bool adds_something(const std::optional<Stage>& known, const Membership& wanted);
 /// False if the last run declared for `place` is another run, for example one with another packing.
 bool holds_place(const sqlite::Database& database, std::string_view run, const Place& place);

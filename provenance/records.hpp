@@ -25,7 +25,7 @@ struct Place {
   bool operator==(const Place&) const = default;
 };
 
-/// The computation that an experiment requests from a stage.
+/// What an experiment requests: how far to compute a stage, and which checkpoints to record.
 struct Ask {
   std::uint64_t checkpoint_every = 1;          ///< cycles between checkpoints
   std::uint64_t target_cycles = 0;             ///< number of cycles to compute
@@ -34,11 +34,11 @@ struct Ask {
   std::uint64_t ordinal = 0;                   ///< seq of the event that declared this request
 };
 
-/// Where an experiment uses a stage (scale, variant, seed), and what it requests from the stage.
+/// Where an experiment uses a stage (scale, variant, seed), and what the experiment requests.
 struct Membership {
   Place place = {};
   Ask ask = {};
-  /// False if a manifest that was registered later declares a stage of this experiment and scale.
+  /// False if a manifest registered later declares stages of the same experiment and scale.
   bool newest = true;
 
   static void fields(auto& m, auto field) {
@@ -114,8 +114,8 @@ struct Stage {
   std::vector<Membership> memberships;  ///< in the order in which they were declared
 };
 
-/// What users count, list and average as one run: an experiment, scale, variant and seed, and the
-/// last stage computed for them. A stage that two experiments share belongs to two runs.
+/// One run as users count it: an experiment, scale, variant and seed, with the last stage computed
+/// for this combination. A stage that two experiments share belongs to two runs.
 struct Run {
   Place place = {};
   Ask ask = {};

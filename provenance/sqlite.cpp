@@ -81,8 +81,8 @@ Database::Database(const std::filesystem::path& file, Access access)
     inode_ = opened.st_ino;
   }
   sqlite3_busy_timeout(handle, kBusyTimeoutMs);
-  // SQLite limits the size of a whole row. The limit set here is `beside` bytes above the limit of
-  // one value, to leave room for the other columns of the row.
+  // SQLite limits the size of a whole row. The row limit exceeds the limit of one value by `beside`
+  // bytes, which leaves room for the other columns.
   constexpr std::size_t beside = 64 << 10;
   sqlite3_limit(handle, SQLITE_LIMIT_LENGTH, static_cast<int>(StoreLimits::value_bytes + beside));
   sqlite3_limit(handle, SQLITE_LIMIT_ATTACHED, 0);

@@ -25,7 +25,7 @@ using nlohmann::json;
 
 constexpr const char* kLogFile = "store.sqlite";
 
-/// The name of a file or subfolder of `folder`, except hidden ones; "" if there is none.
+/// The name of any file or subfolder of `folder` that is not hidden; "" if there is none.
 std::string other_file_in(const std::filesystem::path& folder) {
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
@@ -115,7 +115,7 @@ void require_one(const char* what, std::string_view prefix, const auto& candidat
                              what, prefix, list, candidates.size() > most ? "\n  ..." : ""));
 }
 
-/// SHA-256 of the checkpoints from which other stages started.
+/// SHA-256 of each checkpoint from which a later stage started.
 std::set<std::string> initial_states(const EventLog& log) {
   std::set<std::string> found;
   for (const Event& event : log.events("", events::RunStarted::kType)) {
@@ -207,8 +207,8 @@ void Store::append_held(const std::string& id, const NewEvent& event, bool relea
   const auto held = held_.find(id);
   if (held == held_.end()) {
     throw ConcurrencyConflict(
-        fmt::format("run {}: this process is not computing the run, so it may not record events of "
-                    "the run",
+        fmt::format("run {}: this process is not computing the run, so it is not allowed to record "
+                    "events of the run",
                     id));
   }
   if (const std::string why = loss_of(database_, self_.token, id, held->second); !why.empty()) {
@@ -241,7 +241,7 @@ std::string Store::register_manifest(std::string_view text, std::string_view pat
   if (log_.version(stream) > 0 && (!known || newest.text(0) == stream)) return sha256;
   NewEvent event =
       encode(events::ManifestRegistered{{sha256, std::string(path), std::string(text)}, info});
-  // The manifest with the latest recorded_at is the newest version of the experiment.
+  // The manifest with the latest recorded_at is the newest one, so this event must not be earlier.
   if (known) event.not_before = newest.text(1);
   append(stream, event, lock);
   lock.commit();
@@ -574,7 +574,7 @@ std::vector<CheckpointRecord> Store::prune_leftovers() const {
 
 std::uint64_t Store::prune(const std::vector<CheckpointRecord>& records, bool last_too) {
   {
-    // One transaction records either all checkpoints as pruned or none.
+    // One transaction: after an error, none of the checkpoints is recorded as pruned.
     Writing lock(*this);
     DerivedCache measures(folder_, Access::read);
     for (const CheckpointRecord& record : records) {

@@ -108,7 +108,7 @@ class Store {
 
   /// Records those memberships of the stage that meet one of these conditions: the store does not
   /// have the membership; the store has it with a smaller target or another checkpoint interval;
-  /// another stage was declared for the membership's place after this stage. A larger target makes
+  /// after this stage, another stage was declared for the membership's place. A larger target makes
   /// a completed stage `declared` again. Throws std::invalid_argument when the stage's id is not a
   /// SHA-256 or was recorded with other parameters, or when the parent was not declared.
   void declare_stage(const Stage& stage);
@@ -147,9 +147,9 @@ class Store {
   /// Marks the checkpoint as rejected, so that it is not used. Its file is kept.
   void reject_checkpoint(const std::string& id, const std::string& sha256, const std::string& why);
 
-  /// The newest checkpoint before `before_step` that can be loaded. Missing and damaged
-  /// checkpoints are skipped. If `damage` is given, an error is added to it for each missing or
-  /// damaged checkpoint, and in a writable store these checkpoints are then marked as rejected.
+  /// The newest checkpoint before `before_step` that can be loaded. Missing and damaged checkpoints
+  /// are skipped. If `damage` is given, an error is added to `damage` for each of them, and a
+  /// writable store also marks them as rejected.
   std::optional<LoadedCheckpoint> newest_valid_checkpoint(
       const std::string& id, std::vector<std::string>* damage = nullptr,
       std::uint64_t before_step = UINT64_MAX);
@@ -183,8 +183,8 @@ class Store {
   /// The checkpoint, in any state, whose SHA-256 begins with `prefix`; nothing when there is none.
   /// Throws NotFound when there are several; the message lists the candidates.
   std::optional<CheckpointRecord> find_checkpoint(std::string_view prefix) const;
-  /// The bytes of a checkpoint file, whose SHA-256 is checked. Throws FilePruned if the
-  /// checkpoint was pruned, before or after the caller got `record`. Throws StoreDamaged, which
+  /// The bytes of a checkpoint file, whose SHA-256 is checked. Throws FilePruned if the checkpoint
+  /// was pruned, even if this happened after the caller got `record`. Throws StoreDamaged, which
   /// names the file, if the file is missing for another reason or its size or SHA-256 differs.
   std::vector<std::byte> read_file(const CheckpointRecord& record) const;
   /// Decodes the file and compares the content with the record. Throws StoreDamaged with the path.
@@ -210,18 +210,18 @@ class Store {
   std::vector<CheckpointRecord> prunable(const PruneChoice& choice) const;
   /// Pruned checkpoints whose files still exist because of a crash.
   std::vector<CheckpointRecord> prune_leftovers() const;
-  /// Records the checkpoints as pruned, then deletes their files. Skips checkpoints that must
-  /// not be pruned any more because the store has changed. Returns the number of bytes freed.
+  /// Records the checkpoints as pruned, then deletes their files. Skips a checkpoint if the store
+  /// has changed so that the checkpoint must now be kept. Returns the number of bytes freed.
   std::uint64_t prune(const std::vector<CheckpointRecord>& records, bool last_too = false);
   /// Stores a regenerated checkpoint. Throws StoreDamaged when its bytes differ from the record.
   void restore_checkpoint(const CheckpointRecord& record, const Checkpoint& checkpoint);
 
-  /// Merges other stores into this one (merge.cpp). If `runs` is not empty, merges no other runs,
-  /// but still all manifests and all files of grain positions. `runs` must then also contain the
-  /// parents of its runs. Throws NotFound when a source is not a store, and MachineError while a
-  /// process computes a run of this store. Throws StoreDamaged before anything is written if a
-  /// source is damaged, or if two stores hold different states for the same step of a run or use
-  /// one id for different runs.
+  /// Merges other stores into this one (merge.cpp). If `runs` is not empty, only these runs are
+  /// merged, and `runs` must contain their parents, too. All manifests and all files of grain
+  /// positions are merged in any case. Throws NotFound when a source is not a store, and
+  /// MachineError while a process computes a run of this store. Throws StoreDamaged before anything
+  /// is written if a source is damaged, or if two stores hold different states for the same step of
+  /// a run or use one id for different runs.
   std::vector<MergeReport> merge(const std::vector<std::filesystem::path>& sources,
                                  const std::set<std::string>& runs = {});
 

@@ -119,7 +119,7 @@ void compare_tables(const Rows& stored, const Rows& derived, VerifyReport& repor
     const auto [a, b] = std::ranges::mismatch(rows, found);
     if (a == rows.end() && b == found.end()) continue;
     add_error(report, "table " + table,
-              fmt::format("it differs from the events: {}; run `rebuild`",
+              fmt::format("the table differs from the events: {}; run `rebuild`",
                           row_difference(a == rows.end() ? nullptr : &*a,
                                          b == found.end() ? nullptr : &*b)));
   }

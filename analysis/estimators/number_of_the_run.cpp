@@ -8,7 +8,7 @@ Scalar scalar_of_run(const ClaimSpec& claim) {
   if (const Measure* measure = find_measure(claim.compare, MeasureKind::run)) {
     return {std::string(measure->words), std::string(measure->reach), measure->of_run};
   }
-  // Returns the value of the expression, or why the first missing measure has no value.
+  // If measures in the expression have no value, the reason for the first of them is returned.
   const auto of = [number = NumberColumn(claim.compare),
                    names = names_in(claim.compare)](const FrameRun& run) {
     for (const std::string& name : names) {

@@ -103,7 +103,7 @@ const Estimator pooled_difference = {
     .name = "pooled_difference",
     .meaning =
         "difference between the two sides of `between`, averaged over groups of runs that agree in "
-        "all other parameters; each side may have several variants",
+        "all parameters that `between` does not name; each side may have several variants",
     .of_run = std::nullopt,
     .over_variants = true,
     .decide = decide_pooled,

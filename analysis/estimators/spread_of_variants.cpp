@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The standard deviation between the true means of the variants. If its upper limit is below the
+// The standard deviation of the true means of the variants. If its upper limit is below the
 // margin, the swept parameters hardly change the number.
 #include <fmt/format.h>
 
@@ -59,7 +59,7 @@ Verdict decide_spread(const ClaimSpec& claim, const Claim& stated, RunGroup runs
 
 const Estimator spread_of_variants = {
     .name = "spread_of_variants",
-    .meaning = "standard deviation between the true means of the variants, by analysis of variance",
+    .meaning = "standard deviation of the true means of the variants, by analysis of variance",
     .of_run = std::nullopt,
     .over_variants = true,
     .one_side = true,

@@ -209,8 +209,8 @@ Table followed_table(std::span<const AmplitudeGrowth> all) {
 }
 
 /// Fig. 4(b) of the main text. In method 1 of section C the onset is the phi at which a curve
-/// reaches the critical size. If a packing has no crystallites, its largest size is taken as 1, as
-/// in method 2.
+/// reaches the critical size. A packing without crystallites is drawn with size 1; method 2 also
+/// uses size 1.
 Table largest_table(const Frame& frame, std::span<const AmplitudeGrowth> all) {
   PlotSpec plot{.name = "C_largest",
                 .y = "max(1,largest_crystallite)",

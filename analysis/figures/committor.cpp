@@ -19,16 +19,16 @@
 namespace shearcell {
 namespace {
 
-/// Numbers of cycles without a descendant after which a crystallite counts as gone. Verdicts use
-/// cycles_gone. The other two numbers show how much the results depend on this choice.
+/// A crystallite counts as gone after this number of consecutive cycles without a descendant.
+/// Verdicts use cycles_gone. The other two numbers show how much the results depend on this choice.
 constexpr std::array<std::size_t, 3> cycles_without = {1, cycles_gone, 3};
 constexpr std::size_t chosen_rule = 1;  ///< index of cycles_gone in cycles_without
 /// If more than this fraction of the controls (see Subject) grow, a critical size is defined only
 /// if the smallest crystallites grow more often than the controls. [choice]
 constexpr double rare = 0.1;
 
-/// The number of clones with each fate, in the order of Fate. A fifth number counts the clones with
-/// fate `gone` in which a descendant grew later ("revived").
+/// The number of clones with each fate, in the order of Fate. The last number counts the clones
+/// with Ending::revived.
 struct Fates {
   Eigen::Array<std::size_t, 5, 1> clones = Eigen::Array<std::size_t, 5, 1>::Zero();
 
@@ -46,12 +46,12 @@ const std::array fate_columns = {"grown", "gone", "merged", "undecided", "revive
 /// The outcomes for each element of cycles_without.
 using FatesByRule = std::array<Fates, cycles_without.size()>;
 
-/// A crystallite of a recorded state, and its outcomes in the clones of this state. Size 0 means a
-/// control: a state in which all crystallites have fewer than least_descendant grains.
+/// A crystallite of a recorded state, or a control: a state in which all crystallites have fewer
+/// than least_descendant grains.
 struct Subject {
-  const FrameRun* run;  ///< the first clone
-  std::int32_t size;
-  FatesByRule fates = {};
+  const FrameRun* run;     ///< the first clone
+  std::int32_t size;       ///< grains; 0 for a control
+  FatesByRule fates = {};  ///< outcomes in all clones of the state
 };
 
 struct Amplitude : AmplitudeRuns {
@@ -71,8 +71,8 @@ std::vector<const CrystalliteMap*> maps_of(const FrameRun& run) {
   return maps;
 }
 
-/// Adds the subjects of a state, with their outcomes in its clones. The subjects are the followed
-/// crystallites or, if the state is a control, the state itself.
+/// Adds the subjects of the state that the clones begin with: the followed crystallites or, if the
+/// state is a control, the state itself.
 void add_state(RunGroup clones, Amplitude& to) {
   std::vector<std::vector<const CrystalliteMap*>> maps;  // of each clone
   for (const FrameRun* clone : clones) maps.push_back(maps_of(*clone));
@@ -182,7 +182,7 @@ std::optional<Estimate> half_size(const Amplitude& one, std::size_t rule) {
   return GrowthCurve(by_packing_and_size(one, rule), *background(one)).critical_size();
 }
 
-/// Each point combines at least this number of clones with a known outcome. [choice]
+/// Least number of outcomes (grown or gone) that are combined in one point. [choice]
 constexpr std::size_t least_drawn = 8;
 
 Table probability_table(std::span<const Amplitude> all) {
@@ -309,7 +309,7 @@ Verdict size_is_published(const Amplitude& one) {
       packings, note, fates_of({&one}));
 }
 
-/// Decides whether the critical size grows with the amplitude, as in the supplement. Clones at
+/// Decides whether the critical size grows with the amplitude, as the supplement reports. Clones at
 /// different amplitudes count as independent: they have at most the packing in common.
 Verdict size_grows(const Amplitude& low, const Amplitude& high) {
   const auto before = half_size(low, chosen_rule), after = half_size(high, chosen_rule);

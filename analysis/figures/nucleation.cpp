@@ -37,8 +37,8 @@ std::string name_of(const Group& group) {
 
 /// For each group, a curve that has no points yet. If there are several amplitudes, each amplitude
 /// has its own colour, which is the same in all figures. Otherwise each cell size has its own
-/// colour. With Join::none, the points of the groups in a bin of phi are shifted so that they do
-/// not overlap.
+/// colour. With Join::none, each curve has its own shift along phi, so that the points of
+/// different groups in one bin of phi do not overlap.
 std::map<Group, Series> series_by(const Groups& groups, Join join) {
   std::map<Group, Series> series;
   std::set<double> amplitudes;

@@ -18,8 +18,8 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Fused multiply-adds per second, measured with twelve independent chains. Two units with a
-// latency of five cycles need ten chains. Twelve chains and the constant fit in 16 registers.
+// Fused multiply-adds (FMA) per second, measured with twelve independent chains. Two FMA units with
+// a latency of five cycles need ten chains. Twelve chains and `half` fit in 16 registers.
 template <class D>
 double fused_per_second(D d) {
   constexpr std::size_t kRounds = 150'000, kChains = 12;

@@ -15,7 +15,7 @@ namespace shearcell::bench {
 double multiplications(std::size_t lanes, double slots);
 
 /// Fused vector multiply-adds per second on one core: the largest of several short measurements.
-/// `lanes`: number of doubles per vector, 1 or the width of one of kernels_here().
+/// `lanes`: number of doubles per vector; must be 1 or the width of one of kernels_here().
 double peak_multiplications(std::size_t lanes);
 
 struct SpeedOptions {

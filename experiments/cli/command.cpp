@@ -93,8 +93,8 @@ void order_by_start(std::vector<Manifest>& manifests) {
       });
     };
     const auto ready = std::find_if_not(next, manifests.end(), waits);
-    // If each remaining manifest starts from runs of another one, no order is possible. expand()
-    // then reports the runs that do not exist.
+    // If each remaining manifest starts from runs of another remaining manifest, no order is
+    // possible, and expand() reports the missing runs.
     if (ready == manifests.end()) return;
     std::rotate(next, ready, ready + 1);
   }
@@ -294,7 +294,7 @@ void add_threads_option(CLI::App& command, std::size_t& threads, const std::stri
 void add_engine_option(CLI::App& command, ExpandOptions& options) {
   command
       .add_option("--engine", options.engine,
-                  "Program that computes the shear (default: shearcell)")
+                  "Program that simulates the shear (default: shearcell)")
       ->check(one_of<EngineKind>())
       ->type_name("NAME");
 }

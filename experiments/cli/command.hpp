@@ -105,10 +105,10 @@ void add_common_options(CLI::App& command, Context& context, const std::string& 
 void add_expand_options(CLI::App& command, ExpandOptions& options);
 
 /// Reads and expands each manifest once. If the runs of manifest B start from runs of manifest A, A
-/// comes before B in the result. Passes all warnings to warn(). Also warns if a plan lacks runs
-/// of the previous version of its manifest: the version of an earlier plan in the result or, if
-/// there is none, the newest version in the store. If `brief` is true and a manifest has more than
-/// three warnings, prints the first warning and counts the others.
+/// comes before B in the result. Passes all warnings to warn(). Also warns if figures
+/// will omit runs of the store or of an earlier plan, because a plan has another version of their
+/// manifest. If `brief` is true and a manifest has more than three warnings, prints the first
+/// warning and counts the others.
 std::vector<Plan> load_plans(const std::vector<std::string>& paths, const ExpandOptions& options,
                              Context& context, bool brief = true);
 

@@ -51,8 +51,8 @@ void print_verdicts(const ComputedFigure& result) {
   }
 }
 
-/// Prints the files and verdicts of the figure, unless --json is given. Prints messages on missing
-/// data to standard error and adds them to `told`. Skips messages that are already in `told`.
+/// Prints the files and verdicts of the figure, unless --json is given. Messages about missing data
+/// go to standard error and are added to `told`. Messages that are already in `told` are skipped.
 void print(const ComputedFigure& result, const std::string& path, std::set<std::string>& told,
            Context& context) {
   const auto is_told = [&](const std::string& line) { return !told.insert(line).second; };
@@ -175,7 +175,7 @@ void add_figures(CLI::App& app, Context& context) {
   command->get_option("--experiment")
       ->description(
           "Draw figures with runs of this experiment only. Figures given by name are drawn even if "
-          "its manifest does not list them");
+          "the experiment's manifest does not list them");
   command->get_option("--scale")->expected(1)->description(
       "Scale of the runs (default: for each experiment, the scale of the run that was added last)");
   command

@@ -17,7 +17,7 @@ void merge(const std::vector<std::string>& sources, Context& context) {
     throw NotFound(fmt::format("'{}': this folder contains no store", source));
   }
   Store store(context.store, Access::create);
-  std::set<std::string> known;  // notes of newest_runs() on each store before the merge
+  std::set<std::string> known;  // NewestRuns::notes of all stores before the merge
   const auto add_known = [&](const Store& one) {
     for (std::string& note : newest_runs(select_runs(one, {})).notes) known.insert(std::move(note));
   };

@@ -131,9 +131,9 @@ std::vector<std::string> powers_of(const Store& store, const Plan& plan) {
   return powers;
 }
 
-// For each experiment, adds a note on the next look (interim analysis): the work that this look
-// needs, and the chance that the look decides each claim. As in verdicts, runs that failed or
-// cannot start count as ended.
+// For each experiment, adds a note on the next look (interim analysis). The note gives the work
+// that this look needs and, for each claim, the probability that the claim is decided by then. As
+// in verdicts, runs that failed or cannot start count as ended.
 void note_looks(const std::vector<Plan>& plans, const std::vector<Line>& lines, const Store* store,
                 const std::vector<Stage>& known, std::vector<std::string>& notes) {
   std::set<std::string> failed;  // ids
@@ -175,9 +175,9 @@ void note_looks(const std::vector<Plan>& plans, const std::vector<Line>& lines, 
   }
 }
 
-// Estimates the remaining particle-steps. Assumes that each `until` ends runs at the mean cycle at
-// which this `until` ended earlier runs. Null if no run may end early, or if some `until` of an
-// unfinished run has not ended any run yet.
+// Estimates the remaining particle-steps under the assumption that unfinished stages end at the
+// expected_end() of their `until`. Null if Outlook::may_end_early is false for all stages, or if
+// expected_end() is empty for the `until` of an unfinished stage.
 nlohmann::json left_until(const std::vector<Line>& lines, const std::vector<Stage>& known) {
   std::map<nlohmann::json, std::optional<double>>
       ends;  // `until` -> expected last cycle; cached, since expected_end() reads all runs
@@ -211,8 +211,8 @@ void print_until(const std::vector<Line>& lines, const nlohmann::json& left, dou
   fmt::print("      `until` ({}): ", fmt::join(ends, "; "));
   if (left.is_null()) {
     fmt::print(
-        "fewer particle-steps; their number can be estimated after each condition has ended at "
-        "least one run\n");
+        "fewer particle-steps than the number above; no estimate yet, because a condition has not "
+        "ended any run so far\n");
   } else {
     fmt::print(
         "about {:.3g} particle-steps ({:.0f} % of the number above) if `until` ends these runs at "
@@ -368,7 +368,7 @@ void plan(const PlanOptions& options, Context& context) {
 void add_plan(CLI::App& app, Context& context) {
   const auto [command, options] = add_command(
       app, context, "plan",
-      "Show the runs of manifests, which runs are done, and the cost of the other runs", plan);
+      "List the runs of manifests, show which are done, and estimate the cost of the others", plan);
   command->add_option("manifest", options->manifests, "YAML manifests")->required();
   add_expand_options(*command, options->expand);
   add_engine_option(*command, options->expand);

@@ -51,7 +51,7 @@ std::vector<CheckpointRecord> prunable(const PruneOptions& options, const Store&
     const std::set<std::string> ids = selected_ids(store, options.selection);
     if (choice.runs.empty()) choice.runs.assign(ids.begin(), ids.end());
     std::erase_if(choice.runs, [&](const std::string& id) { return !ids.contains(id); });
-    if (choice.runs.empty()) return {};  // to Store::prunable(), an empty list means all runs
+    if (choice.runs.empty()) return {};  // Store::prunable() would choose all runs
   }
   return store.prunable(choice);
 }
@@ -97,7 +97,7 @@ void prune(const PruneOptions& options, Context& context) {
   const std::size_t kept = std::erase_if(
       records, [&](const CheckpointRecord& c) { return why_not_again(store, c, known); });
   if (!context.json && kept > 0) {
-    fmt::print("{} kept: not bitwise reproducible (from LAMMPS or another program version)\n",
+    fmt::print("{} kept: not bitwise reproducible (LAMMPS or another bits_version)\n",
                counted(kept, "checkpoint"));
   }
   const std::size_t chosen = records.size();
@@ -226,8 +226,8 @@ void regenerate(const RegenerateOptions& options, Context& context) {
   const bool named = !options.checkpoints.empty(), filtered = options.selection != RunSelection{};
   if (named == (options.all || filtered)) {
     throw CLI::ValidationError("regenerate",
-                               "choose what to recompute: either checkpoints, or runs by "
-                               "--experiment E or --all; see regenerate --help");
+                               "choose what to recompute: either name checkpoints, or select "
+                               "runs with --experiment E or --all; see regenerate --help");
   }
   Store store(context.store, Access::write);
   std::vector<CheckpointRecord> records =

@@ -266,8 +266,8 @@ can share the work on one store. To use several machines, select different runs 
                        "Work as a task of a job that `submit` queued; --store is the task's store");
   resume
       ->add_option("--scratch", resume_options->scratch,
-                   "Copy the store to this folder on the node's own disk and work on the copy. In "
-                   "DIR, $NAME and ${NAME} are replaced by environment variables of the node")
+                   "Copy the store to this folder on the node's own disk and work on the copy. DIR "
+                   "may contain environment variables of the node, as $NAME or ${NAME}")
       ->needs(task)
       ->type_name("DIR");
   add_common_options(

@@ -149,7 +149,7 @@ Facts facts(const PlacedRun& listed, const Membership& shown, const View& view) 
 /// The remaining work, and the time that this work will take at the mean speed so far. Stages that
 /// failed or cannot start are left out.
 struct Estimate {
-  std::string problem;  ///< why the work is unknown (a run cannot be read); "" if it is known
+  std::string problem;  ///< why a run cannot be read, else ""; if set, `work` is incomplete
   Work work;
   /// Number of stages computed at the same time. If none is computed now: one per usable core.
   std::size_t at_a_time = 1;

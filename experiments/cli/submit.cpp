@@ -108,7 +108,7 @@ void queue_jobs(Store& store, const Submission& submission, Result& result, Cont
   try {
     job = queue_job(array_job(submission, store.folder(), options), folder);
   } catch (const MachineError&) {
-    throw;  // keeps the folder, because the job may be queued
+    throw;  // keeps the folder: it is unknown whether the job is queued
   } catch (...) {
     std::error_code ignored;
     fs::remove_all(folder, ignored);

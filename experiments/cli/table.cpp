@@ -78,7 +78,7 @@ void add_table(CLI::App& app, Context& context) {
     command
         ->add_flag_callback(
             "--" + name, [options = options, name] { options->simulated.push_back(name); },
-            fmt::format("Add {}; this needs a simulation that takes {}", fmt::join(added, ", "),
+            fmt::format("Add {} (computed by a simulation that takes {})", fmt::join(added, ", "),
                         one.cost))
         ->excludes(command->get_option("--curve"));
   }
@@ -94,8 +94,8 @@ void add_table(CLI::App& app, Context& context) {
           "Columns whose values need a simulation are written only with an option, such as "
           "--rest.\ncritical_size and all columns listed after it are written only with --per run. "
           "With --per run, all\nother measures are measures of the run's newest checkpoint. A "
-          "run that several experiments share\nhas rows for each experiment, up to the cycles "
-          "that the experiment asks for.\n\nCurves:\n" +
+          "run that several experiments share\nhas rows for each of these experiments, up to the "
+          "last cycle that this experiment asks for.\n\nCurves:\n" +
           curves_text +
           "Examples:\n"
           "  shearcell table --experiment drag --out drag.csv\n"

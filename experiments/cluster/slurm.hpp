@@ -39,7 +39,7 @@ struct Job {
   std::vector<std::string> command;  ///< `sbatch`, its options, `file`, the script's arguments
 };
 
-/// A line of squeue: a task of an array job, or another job.
+/// A line of squeue: a task of an array job, or a job that is not an array.
 struct QueuedTask {
   std::string name;                   ///< name of the job
   std::string job;                    ///< number of the job, or of the whole array

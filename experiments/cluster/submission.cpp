@@ -30,11 +30,11 @@ constexpr std::size_t kIdDigits = 12;
 
 // job.sh PROGRAM FOLDER ARGUMENT...
 //
-// Some time before the time limit, Slurm sends USR1, only to the shell (`B:` in --signal). If a job
-// is cancelled or preempted, Slurm sends TERM to all processes. After either signal, the program
-// records its states and ends with exit code 85. After USR1, the script also queues the task again.
-// It identifies the task as ARRAY_TASK ("17_3"), because the job number of a task may also be the
-// number of the whole array. If the program is killed (out of memory), the script restarts it.
+// Before the time limit, Slurm sends USR1 only to this script (`B:` in --signal). To cancel or
+// preempt a job, Slurm sends TERM to all processes. The script passes both signals on to the
+// program, which then records its states and ends with code 85. After USR1, the script also queues
+// the task again. It identifies the task as ARRAY_TASK ("17_3"), because the job number of a task
+// may also be the number of the whole array. The script restarts a killed program (out of memory).
 constexpr const char* kTaskScript = R"sh(#!/bin/bash
 again= stopped= signalled= program= leave=${SLURM_RESTART_COUNT:+--leave-failed}
 pass_on() {
@@ -163,7 +163,7 @@ std::vector<Share> share_out(std::vector<Share> packings, std::size_t tasks) {
   std::ranges::stable_sort(packings, std::greater(), &Share::core_seconds);
   std::vector<Share> shares(std::min(tasks, packings.size()));
   for (const Share& packing : packings) {
-    // At equal cost, the share with fewer packings is chosen, so that no share stays empty.
+    // At equal core time, the share with fewer packings gets `packing`. So no share stays empty.
     const auto load = [](const Share& share) {
       return std::pair(share.core_seconds, share.packings.size());
     };

@@ -34,10 +34,10 @@ struct Share {
 /// several plans contain is listed once. `store` may be null.
 std::vector<Share> shares_of(const std::vector<Plan>& plans, const Store* store);
 
-/// Combines shares with one packing each, from shares_of(), into at most `tasks` larger shares.
+/// Distributes `packings`, which are shares from shares_of(), over at most `tasks` new shares.
 /// Takes the elements of `packings` in order of descending core time, and adds each of them to the
-/// returned share that has the least core time so far. No returned share is empty. The same input
-/// gives the same shares.
+/// new share that has the least core time so far. No new share is empty. The same input gives the
+/// same new shares.
 std::vector<Share> share_out(std::vector<Share> packings, std::size_t tasks);
 
 /// Options for Slurm. Empty texts leave the choice to the cluster.

@@ -24,8 +24,8 @@ struct ExportedColumn {
 };
 
 /// Particles in SI units. Measures of wall grains are 0; classes of wall grains are -1. Velocities
-/// of grains and of the moving wall belong to half a time step before the state's step; velocities
-/// of tilting walls belong to the state's step.
+/// of grains and of the moving wall are from half a time step before the state's step. Velocities
+/// of tilting walls are from the state's step.
 struct ExportedState : Particles {
   Checkpoint checkpoint;
   std::string sha256;  ///< SHA-256 of the checkpoint's file

@@ -57,8 +57,8 @@ void add_core_times(const Store& store, CollectedRuns& collected) {
 
 /// Adds to each run the checkpoints that the figure needs, up to the end of the run. Removes runs
 /// that have none of these checkpoints. Adds notes on removed runs, on unfinished runs, and on
-/// checkpoints that the manifest asks for and the run did not record. For FigureForm::table, which
-/// needs only the last checkpoint of each run, removes no run and adds no note.
+/// checkpoints that the manifest asks for and the run did not record. A FigureForm::table needs
+/// only the last checkpoint of each run; for such a figure, no run is removed and no note is added.
 void add_checkpoints(const Store& store, const Figure& figure, const MeasureOptions& measuring,
                      CollectedRuns& collected) {
   const auto [first, last] =
@@ -221,8 +221,8 @@ std::vector<Run> runs_of(const Store& store, const WantedFigure& wanted,
   return found;
 }
 
-/// The scale of the run that was declared last. Runs of older manifest versions are considered only
-/// if no run belongs to the newest version of its experiment's manifest.
+/// The scale of the run that was declared last. Considers only runs of `manifests`, which are the
+/// newest versions. If there are no such runs, considers all runs.
 std::string last_scale(const std::vector<Run>& runs,
                        const std::vector<RegisteredManifest>& manifests) {
   const auto is_newest = [&](const Run& run) {

@@ -45,9 +45,9 @@ struct WantedFigures {
 };
 
 /// Returns the figures, plots and claims with these names from the newest manifests of these
-/// experiments. An empty list excludes nothing. If both lists are given, a named figure of
-/// all_figures() is returned even for experiments whose manifests do not list the figure. Throws
-/// NotFound for an unknown figure or experiment; the message proposes the nearest name.
+/// experiments. An empty list excludes nothing. If both lists are given, figures of
+/// all_figures() in `names` are returned even for experiments whose manifests do not list them.
+/// Throws NotFound for an unknown figure or experiment; the message proposes the nearest name.
 WantedFigures wanted_figures(const Store& store, const std::vector<std::string>& names = {},
                              const std::vector<std::string>& experiments = {});
 
@@ -56,9 +56,9 @@ WantedFigures wanted_figures(const Store& store, const std::vector<std::string>&
 std::string leave_out_unselected(const Store& store, const RunSelection& runs,
                                  std::vector<WantedFigure>& figures);
 
-/// Returns the newest_runs() of `selected`, without checkpoints. If runs are left out, adds lines
-/// about them to `notes`. In runs on which the key `pressure_at` has no effect, the key is set to
-/// `top`.
+/// Returns the newest_runs() of `selected`; FrameRun::checkpoints is empty. If runs are left out,
+/// adds lines about them to `notes`. In runs on which the key `pressure_at` has no effect, the key
+/// is set to `top`.
 std::vector<FrameRun> frame_runs(std::vector<Run> selected, std::vector<std::string>& notes);
 
 /// Removes the checkpoints for which scalars_provider has no result. Limits FrameRun::end to the
@@ -77,10 +77,10 @@ struct CollectedRuns : Frame {
   std::vector<std::string> notes;
 };
 
-/// Returns the newest_runs() of the figure's experiment that match `selection`, at the scale of the
-/// run that was declared last. Each run has its checkpoints up to the cycle end_for(). In a figure
-/// of all experiments, a run that belongs to several experiments occurs once for each experiment.
-/// Throws NotFound if no run is selected.
+/// Selects the runs of the figure's experiments that match `selection` and have the scale of the
+/// last declared run among them. Returns the newest_runs() of these, with the checkpoints that the
+/// figure needs, up to FrameRun::end. In a figure of all experiments, a run that belongs to several
+/// experiments occurs once for each experiment. Throws NotFound if no run is selected.
 CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
                            const RunSelection& selection, const MeasureOptions& measuring = {});
 

@@ -36,7 +36,7 @@ struct ComputedFigure : MeasureOutcome, FigureResult {
   std::string caption;                       ///< text of NAME.caption.txt; "" if nothing is drawn
   nlohmann::json lineage;                    ///< the figure's record; draw_figure() adds `outputs`
   std::vector<std::filesystem::path> files;  ///< all files that draw_figure() wrote
-  std::vector<std::string> undrawn;          ///< a line for each drawing that failed, with reason
+  std::vector<std::string> undrawn;  ///< for each drawing that failed, a line with the reason
 };
 
 /// Computes the tables, verdicts and lineage of a figure. Writes only measures, into
@@ -48,7 +48,7 @@ ComputedFigure compute_figure(const Store& store, const WantedFigure& wanted,
                               const FigureOptions& options);
 
 /// Computes the figure and writes these files into FOLDER/EXPERIMENT/SCALE, where SCALE is
-/// scale_name(). The files of a figure of all experiments are in FOLDER/SCALE.
+/// scale_name(). If ComputedFigure::experiment is empty, the folder is FOLDER/SCALE.
 /// - for each panel: PANEL.csv, PANEL.svg, and PANEL.pdf if librsvg is installed
 /// - NAME.caption.txt, if something is drawn
 /// - NAME.verdict.json, and NAME.verdict.csv with the numbers of each run, if there are claims

@@ -45,7 +45,7 @@ MeasureOutcome keep_measures(const Store& store, std::vector<CheckpointRecord>& 
     Stage stage = store.stage(record.run);
     if (stage.memberships.empty())
       stage.memberships.emplace_back();  // damaged store: no experiment declared the stage
-    std::vector<FrameRun> runs;          // one for each place of the stage
+    std::vector<FrameRun> runs;          // one for each element of stage.memberships
     for (const auto& [place, ask, newest] : stage.memberships) {
       FrameRun& run = runs.emplace_back(FrameRun{{place, ask, stage}});
       for (CheckpointRecord& own : store.checkpoints(stage.id)) {

@@ -80,15 +80,15 @@ FigureInput read_input(const json& entry, const RunLineage& run) {
   found = at_cycles(run, input.states.cycles);
   for (const CheckpointRecord& record : found) input.checkpoints.push_back(record.sha256);
   if (states_of(found) != input.states)
-    input.fault = "the states in the log differ from the figure's record";
+    input.fault = "the checkpoint states in the log differ from those in the figure's record";
   return input;
 }
 
 // The swept values of the run, from the version of the manifest that the figure used.
 json swept_values_of(const Stage& stage, const FigureInput& input) {
   for (const auto& [place, ask, newest] : stage.memberships) {
-    // Earlier versions of this program named a variant of an older manifest
-    // "VARIANT,manifest=VERSION".
+    // In records of earlier program versions, ",manifest=VERSION" follows the name of a variant if
+    // the variant is from an older manifest.
     const bool same =
         input.variant == place.variant || input.variant.starts_with(place.variant + ",manifest=");
     if (place.manifest == input.manifest && same) return place.swept;

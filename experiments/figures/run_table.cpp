@@ -75,8 +75,8 @@ std::vector<Column> which_checkpoint() {
                         [](const CheckpointRecord& c) { return c.sha256; })};
 }
 
-/// The columns of a checkpoint. A simulated measure has a column only if `simulated` contains
-/// the name of its provider.
+/// The columns of a checkpoint. A measure that needs a simulation has a column only if `simulated`
+/// contains the name of the measure's provider.
 std::vector<Column> measures(std::span<const std::string> simulated) {
   std::vector<Column> columns = which_checkpoint();
   for (const Measure* measure : all_measures(MeasureKind::number)) {

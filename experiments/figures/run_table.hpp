@@ -36,9 +36,9 @@ RunTable run_table(const Store& store, const RunSelection& selection, RowPer per
 RunTable curve_table(const Store& store, const RunSelection& selection, const Measure& measure,
                      const MeasureOptions& options);
 
-/// Names of all providers that have columns in the table, except the providers that simulate. The
-/// first name is "scalars".
+/// Names of the providers that compute numbers from the file of a checkpoint. "scalars" is first.
 std::vector<std::string> table_providers();
+/// Names of the providers that compute measures by a simulation (ComputedFrom::simulation).
 std::vector<std::string> simulating_providers();
 
 /// All columns except those of swept parameters. Includes the measures of simulating_providers().

@@ -67,18 +67,18 @@ bool may_differ_in_settling(std::string_view key);
 /// True for steps_per_cycle and settle_time_step_s, which a manifest may set to `auto`.
 bool takes_auto(std::string_view key);
 
-/// Sets the parameter so that the time step is about 0.3547 times the stability limit, as in Table
-/// I. A cycle (for settle_time_step_s: 2 s) is a whole number of time steps. With the parameters
-/// of Table I, the result is the time step of Table I. The result may be out of range; check it
-/// with check_value().
+/// Sets the parameter `key` so that the time step is about 0.3547 times the stability limit, as in
+/// Table I. For settle_time_step_s, 2 s is a whole number of time steps. With the parameters of
+/// Table I, the result is the time step of Table I. The result may be out of range; check it with
+/// check_value().
 void resolve_auto(std::string_view key, Parameters& parameters);
 
-/// Mean overlap of touching grains at rest [d], to leading order: 0.75 p d/k. By the virial, a
-/// packing with n grains per volume and z contacts per grain has the mean pressure p = n z k
-/// <overlap> d/6, so <overlap>/d = 6/(n d^3 z) p d/k. The factor is 0.77 for n d^3 = 1.22 and z =
-/// 6.36 (for N = 2000). Rough side walls bear a part of the pressure, so 0.75 is used, which fits
-/// five settled packings within 7 %. p is the pressure at half the height: P minus half the grains'
-/// weight per area if P acts on a moving bottom wall, P plus half this weight if P acts at the top.
+/// Mean overlap of touching grains at rest [d], to leading order: 0.75 p d/k, where p is the
+/// pressure at half the height: P minus half the grains' weight per area if P acts on a moving
+/// bottom wall, P plus half this weight if P acts at the top. By the virial, a packing with n
+/// grains per volume and z contacts per grain has p = n z k <overlap> d/6, so <overlap>/d = 6/(n
+/// d^3 z) p d/k. The factor is 0.77 for n d^3 = 1.22 and z = 6.36 (for N = 2000). Rough side walls
+/// bear a part of the pressure, so 0.75 is used, which fits five settled packings within 7 %.
 double expected_overlap(const Parameters& parameters);
 
 /// Time [s] after which drag has brought the grains to rest, 18 m/b; infinite without drag. The

@@ -178,7 +178,7 @@ struct VariantCheck {
     }
     if (p.protocol == ProtocolKind::stiffen) {
       refuse(start.at, "start", "cannot be used with protocol stiffen",
-             "A run that starts from a recorded state can only shear it.");
+             "Use protocol continuous or paused.");
     }
     if (start.run.empty() && find("start_seed") == nullptr) {
       refuse(start.at, "start", "lacks seed", "Give the seed of the recorded run: `seed: 3`.");
@@ -296,7 +296,7 @@ void warn_of_ineffective(const Manifest& manifest, const Scale& scale,
   }
 }
 
-// Warnings about parameters that are probably mistakes. `settles`: whether the packing settles.
+// Warnings about parameter values that are probably wrong. `settles`: whether the packing settles.
 std::vector<string> advice_on(const Variant& variant, bool settles) {
   const Parameters &p = variant.parameters, &packing = variant.packing;
   std::vector<string> advice;
@@ -553,8 +553,8 @@ ClaimProblems problems_of(const ClaimSpec& claim, const ScaleRuns& here) {
   return found;
 }
 
-/// The plots or claims of the figures that the manifest lists, then the plots or claims of the
-/// manifest itself. Each is paired with the text that begins the messages about it.
+/// First the plots or claims of the figures in `manifest.figures`, then the plots or claims that
+/// `manifest` defines. Each is paired with the text that begins the messages about it.
 template <class Spec>
 std::vector<std::pair<string, const Placed<Spec>*>> stated_in(
     const Manifest& manifest, std::vector<Placed<Spec>> Manifest::*list) {
@@ -678,7 +678,7 @@ void check_variants(const Manifest& manifest) {
       problems.add(scale.at, path, "is reserved for runs without a scale", "",
                    "Choose another name, such as desk.");
     }
-    // A scale must not set a key that it sweeps. `base` may, because a sweep overrides `base`.
+    // A scale must not set a key of its sweep. `base` may set such keys; the sweep overrides them.
     for (const string& key : scale.own) {
       const auto setting = scale.settings.find(key);
       if (setting == scale.settings.end() || find_axis(scale.sweep, key) == nullptr) continue;

@@ -12,7 +12,7 @@
 
 namespace shearcell {
 
-/// Checks the number of runs, `looks`, `labels` and `primary`. For each variant at each scale, also
+/// Checks `looks`, `labels`, `primary` and the number of runs. For each variant at each scale, also
 /// checks the time steps, cell, `start` and `phases`. `manifest`: from read_manifest(). Throws
 /// ManifestError.
 void check_variants(const Manifest& manifest);

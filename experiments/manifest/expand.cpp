@@ -132,8 +132,8 @@ std::vector<FrameRun> planned_runs(const Manifest& manifest, const Scale& scale,
     const PlannedRun planned = planned_run(common, scale, variant, 1, nullptr, {});
     FrameRun& run = runs.emplace_back(FrameRun{planned});
     run.name = names.at(variant.swept);
-    // With `start`, the id of the packing is not known yet. The variants may share a packing, so
-    // all runs get the same text in place of the id.
+    // With `start`, the id of the packing is not known yet. The checks then assume that all
+    // variants have the same packing.
     const bool known = !scale.start.is_recorded() && scale.start.file.empty();
     run.packing = known ? planned.prepare->id : "start";
     for (const Field& field : schema()) run.parameters[field.name] = field.get(planned.parameters);

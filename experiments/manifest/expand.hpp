@@ -28,9 +28,9 @@ struct ExpandOptions {
   /// Replaces the manifest's `engine`. If this changes the engine, `engine` becomes a swept key.
   std::optional<std::string> engine = {};
   /// Stages in the store, and stages of manifests that stand before this manifest in the same
-  /// command. The stages record how many cycles earlier commands requested. Warnings assume the
-  /// largest number of cycles that any command, including this one, requested with this version of
-  /// the manifest.
+  /// command. Each stage records the number of cycles that earlier commands requested. Warnings
+  /// assume the largest number of cycles that any command, including this one, requested with this
+  /// version of the manifest.
   std::span<const Stage> known = {};
 };
 
@@ -49,8 +49,8 @@ struct Plan {
   std::optional<PackingText> file = {};    ///< the initial grains of all packings
   std::vector<PlannedRun> runs = {};       ///< by variant, then by seed, as the manifest lists them
   std::vector<std::string> warnings = {};  ///< about probable mistakes; one line each
-  /// One line. With a file of grains: what was read from the file. With the key `of`: which
-  /// experiments have the runs that the figures use. Otherwise "".
+  /// A message of one line, or "". If the manifest has a file of grains: what was read from it. If
+  /// the manifest has the key `of`: which experiments have the runs that the figures use.
   std::string read = {};
 };
 

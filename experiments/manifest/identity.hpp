@@ -45,7 +45,7 @@ Stage last_stage(const Parameters& parameters, std::uint64_t seed, const Stage& 
 std::string stage_key(const nlohmann::json& resolved);
 
 /// Thrown if the record of a stage is damaged or was written by another version of the program. The
-/// message names the key.
+/// message names the entry of the record that cannot be read.
 struct UnreadableRecord : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -54,9 +54,9 @@ struct UnreadableRecord : std::runtime_error {
 /// or out of range. Does not compare stage_key(resolved) with the run's id.
 StageInputs read_stage(const nlohmann::json& resolved);
 
-/// The parameters that affect the stage. A parameter that the record omits has the value
-/// Identity::omitted_at. A parameter with Identity::recorded_as is left out: all records
-/// hold the same value of it, which may differ from the value that the run used. If the record is
+/// The parameters that affect a stage, from its record `resolved`. A parameter that is not in the
+/// record has the value Identity::omitted_at. Parameters with Identity::recorded_as are left out,
+/// because their recorded value may differ from the value that the run used. If the record is
 /// damaged, the result has only the parameters in the record.
 nlohmann::json effective_parameters(const nlohmann::json& resolved);
 

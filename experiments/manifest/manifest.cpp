@@ -106,7 +106,7 @@ Until until_from_json(const nlohmann::json& json) {
     if (!fits || !value.is_number() || !can_be_until(name)) continue;
     return {name, value.get<double>(), extra.get<std::uint64_t>()};
   }
-  throw std::runtime_error("until: is not {MEASURE: VALUE, extra_cycles: N}, N <= 1000000");
+  throw std::runtime_error("until: is not {MEASURE: VALUE, extra_cycles: N} with N <= 1000000");
 }
 
 std::string describe(const Until& until) {

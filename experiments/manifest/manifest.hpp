@@ -161,8 +161,8 @@ struct Start {
   std::string experiment = {};
   std::string scale = {};  ///< scale of the recorded run; "": the scale of the new run
   nlohmann::json variant = nlohmann::json::object();  ///< swept values; empty if not given
-  /// First digits of the recorded run's id, from the key `checkpoint`. They replace experiment,
-  /// scale and variant.
+  /// First digits of the recorded run's id, from the key `checkpoint`. If this key is
+  /// given, experiment, scale and variant are empty.
   std::string run = {};
   Settings settings = {};  ///< start_seed, start_cycle, start_noise_d
   Position at = {};
@@ -188,7 +188,7 @@ struct Scale {
   Seeds seeds = {};
   Checkpoints checkpoints = {};
   StatedUntil until = {};
-  std::vector<PrimaryClaim> primary = {};  ///< the claims that these runs are meant to decide
+  std::vector<PrimaryClaim> primary = {};  ///< the claims that this scale is meant to decide
   /// Number of seeds at each look (interim analysis), ascending. Empty: one look, with all seeds.
   std::vector<std::uint64_t> looks = {};
   std::set<std::string> own = {};  ///< keys written in this entry of `scales`
@@ -200,7 +200,7 @@ struct Manifest {
   std::string experiment;
   Position experiment_at;
   std::string question;
-  /// The experiments whose runs the plots and claims use; empty: this experiment.
+  /// The plots and claims use the runs of these experiments. Empty: the runs of this experiment.
   std::vector<std::string> of;
   std::vector<std::string> figures;
   std::vector<VariantLabel> labels;
@@ -235,7 +235,7 @@ Manifest load_manifest(const std::filesystem::path& path);
 /// ManifestError.
 Manifest parse_manifest(std::string_view text, std::string_view file);
 
-/// The table of the keys at the top level in experiments/REFERENCE.md.
+/// The table of the top-level keys of a manifest, for experiments/REFERENCE.md.
 std::string manifest_markdown();
 
 /// Reads a text and checks keys, types and ranges, but not the variants. If `shipped`, plots and

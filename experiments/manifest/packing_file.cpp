@@ -68,7 +68,7 @@ struct Column {
 struct GrainTable {
   string_view header = {};  ///< the line with the names of the columns
   std::vector<Column> columns = {};
-  const char* more = nullptr;  ///< name of values after the last column; null: they are an error
+  const char* more = nullptr;  ///< name for extra values in a row; null: extra values are an error
   char separator = ' ';        ///< ' ' means any number of blanks and tabs
   double first_wall = 1;       ///< a row is a wall grain if its value of kWall is at least this
   std::vector<string_view> rows = {};
@@ -140,12 +140,12 @@ std::optional<LengthUnit> unit_of(string_view name) {
 
 /// `units`: whether a name in kMeanings may end in a unit, as in x_m. A name that is not in
 /// kMeanings may still be recognized as a diameter, a position or a velocity. Such a diameter is
-/// compared with the diameter of the run. Such a position or velocity is refused.
+/// compared with the diameter of the run. A file with such a position or velocity is refused.
 ///
 /// A file must give the same packing in all versions of this program, because the packing's id does
-/// not change. Earlier versions ignored such velocities; therefore they are refused and not read.
-/// Earlier versions also ignored columns such as x_mm or "x [m]"; therefore such columns are read
-/// only if the file has none of the columns x, x_m and x_d.
+/// not change. Earlier versions ignored a velocity whose name is not in kMeanings. If this version
+/// read the velocity, the packing would differ. Earlier versions also ignored columns such as x_mm
+/// or "x [m]". Such columns are read only if the file has none of the columns x, x_m and x_d.
 Meaning meaning_of(const Column& column, bool units) {
   static const std::regex with_unit(
       "(.+?)([ _]|[ _]*[\\[(])(d|[mcu]?m|\u00b5m|\u03bcm)(_per_s|/s)?[\\])]?");
@@ -198,8 +198,8 @@ Meaning meaning_of(const Column& column, bool units) {
           .unit = unit};
 }
 
-/// Whether a part of a file concerns the box, a unit, the kind of the coordinates, the velocities
-/// or the shape of the grains. `name`: the name of the part, such as a key or the heading of a
+/// Whether a part of a file concerns the box, a unit, the velocities, the shape of the grains or
+/// the kind of the coordinates. `name`: the name of the part, such as a key or the heading of a
 /// section.
 bool concerns_grains(string_view name) {
   static const std::regex concerns(
@@ -279,7 +279,7 @@ class PackingReader {
   [[noreturn]] void refuse_file(const string& problem, const string& remedy) const {
     refuse(file_, {}, "", problem, "", remedy);
   }
-  /// Refuses the file because of the line that contains `in`.
+  /// `in`: the line with the problem, or a part of this line.
   [[noreturn]] void refuse_line(string_view in, const string& problem, const string& remedy) const {
     refuse(file_, {place(in).line, 1}, "", problem, "", remedy);
   }
@@ -568,8 +568,8 @@ class PackingReader {
 
   void read_dump() {
     remedy_ =
-        "Write ITEM: BOX BOUNDS and ITEM: UNITS as LAMMPS does, and the columns id x y z vx vy vz, "
-        "not scaled.";
+        "Write ITEM: BOX BOUNDS and ITEM: UNITS as in LAMMPS. Write the columns id x y z vx vy vz. "
+        "The coordinates must not be scaled.";
     string_view count = lines_.front();
     for (const Section& section :
          sections([](string_view line) { return line.starts_with("ITEM:"); })) {
@@ -789,9 +789,9 @@ class PackingReader {
                                 use.factor > 1 ? "radius" : "diameter", diameter() / use.factor,
                                 name_of(unit_.value())),
                     "This program needs equal grains. Check the unit. If it is right, set "
-                    "`diameter_m` or scale the file. If the column has no diameters or radii, "
-                    "remove it. To shear unequal grains, use LAMMPS (`shearcell export --to "
-                    "lammps`).");
+                    "`diameter_m` or scale the lengths in the file. If the column holds something "
+                    "other than diameters or radii, remove the column. To shear unequal grains, "
+                    "use LAMMPS (`shearcell export --to lammps`).");
       }
     }
     if (!holds(uses, kId)) return rows;

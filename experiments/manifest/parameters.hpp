@@ -22,7 +22,7 @@ template <>
 inline constexpr auto kNames<ProtocolKind> = names_in_order<ProtocolKind>("continuous", "paused",
                                                                           "stiffen");
 
-/// The program that computes a shear: this program, or LAMMPS.
+/// The program that computes a shear stage: this program or LAMMPS.
 enum class EngineKind : std::uint8_t { shearcell, lammps };
 template <>
 inline constexpr auto kNames<EngineKind> = names_in_order<EngineKind>("shearcell", "lammps");

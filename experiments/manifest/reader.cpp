@@ -49,7 +49,7 @@ using Names = std::vector<string_view>;
 constexpr std::size_t kLongestLabel = 120, kLongestPath = 1000;  // [bytes]
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr Range kCycles = {0, StoreLimits::cycles};
-// A double represents exactly every whole number up to this one.
+// A double can hold every whole number up to this one without rounding.
 constexpr std::uint64_t kLargestSeed = (std::uint64_t{1} << 53) - 1;
 
 template <class... More>
@@ -139,7 +139,7 @@ void fields(Scale& scale, const auto& visit) {
   visit(scale.settle, {.name = "settle",
                        .doc = "parameter values that apply only while the packing settles. The "
                               "parameters must act on the grains or on the moving wall. Variants "
-                              "that differ only in these parameters share their packings",
+                              "that differ only in the parameters set here share their packings",
                        .example = "{drag_kg_per_s: 1.28e-3}"});
   visit(
       scale.start,
@@ -224,14 +224,14 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
   visit(plot.x,
         {.name = "x",
          .doc = "`cycle` (default), a measure, a parameter, or an expression such as `1/period_s`. "
-                "If `x` has one value for each run, `y` is the value at `at_cycle`. If this `x` "
-                "is a measure, such as `core_time_s`, each variant has one point, at the mean of "
-                "`x` over the runs of the variant",
+                "If `x` has one value for each run, `y` is the value at `at_cycle`. If `x` is "
+                "a measure with one value for each run, such as `core_time_s`, each variant has "
+                "one point, at the mean of `x` over the runs of the variant",
          .names = can_be_x,
          .terms = terms});
   visit(plot.where,
         {.name = "where",
-         .doc = "selects runs by swept values, lists of values, or ranges `{min: 5200}`",
+         .doc = "selects runs by parameters, each with a value, a list, or a range `{min: 5200}`",
          .example = "{fluid: [still, cell]}"});
   visit(
       plot.minus,
@@ -288,7 +288,7 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
                     .example = "[phi_uncorrected]"});
   visit(plot.mark,
         {.name = "mark",
-         .doc = "a black point on each curve, at the mean values of two measures of whole runs",
+         .doc = "a black point on each curve, at the means of two measures with one value per run",
          .example = "{x: onset_size_cycle, y: onset_size_phi, label: onset}"});
   visit(plot.cycle, {.name = "at_cycle",
                      .range = kCycles,
@@ -366,8 +366,8 @@ void fields(Placed<ClaimSpec>& claim, const auto& visit) {
          .range = {0, kInfinity, true},
          .doc = "in the unit of the measure. For `onset_size_cycle` and `reaches`, the margin is "
                 "the largest allowed log2 of the ratio of the two waiting times: a margin of 1 "
-                "allows a factor of 2. These claims use the log-rank test, which includes runs "
-                "that end before the event"});
+                "allows a factor of 2. Claims about waiting times use the log-rank test, which "
+                "includes runs that end before the event"});
   visit(claim.margin, {.name = "relative_margin",
                        .range = {0, kInfinity, true},
                        .doc = "instead of `margin`: limit of the relative difference; 0.03 means 3 "
@@ -521,7 +521,6 @@ struct Reader {
   std::span<const Figure> figures_to_list = {};  // the figures allowed in `figures`
   Names experiments = {};  // plots and claims can select runs of these experiments
 
-  // Reports keys that cannot be used in a manifest with the key `of`.
   void check_of() {
     if (document.find("of") == nullptr) return;
     for (const char* key :
@@ -757,7 +756,7 @@ struct Reader {
       value = about.folds ? boost::algorithm::trim_fill_copy(text, " ") : text;
       if (!in.is_scalar() || value.size() > about.longest || value.find('\n') != value.npos) {
         return reject_type(in, "a plain text",
-                           fmt::format("Write one {} of at most {} bytes.",
+                           fmt::format("Write one {}, at most {} bytes long.",
                                        about.folds ? "text" : "line", about.longest));
       }
       const bool needs_text = about.name == "cannot_be_decided" || about.name == "file";
@@ -776,7 +775,7 @@ struct Reader {
   }
 
   // Reads a pair: the sides of a claim, the first and last cycle, or the ends of a window. If
-  // about.example is empty (`at_cycle`), reads one cycle, which is both the first and the last.
+  // about.example is empty, reads one cycle (key `at_cycle`), which is both first and last.
   template <class T>
   void read(const Node& in, const Field& about, std::array<T, 2>& both) {
     constexpr bool sides = std::is_same_v<T, json>, whole = std::is_integral_v<T>;
@@ -1058,7 +1057,7 @@ struct Reader {
       const auto& [first, at, values] = sweep.zip.front();
       if (axis.values.size() == values.size()) continue;
       problems.add(axis.at, fmt::format("{}.zip.{}", in.path, axis.key),
-                   fmt::format("differs in length from {}, which has {}", first, values.size()),
+                   fmt::format("differs in length from {}, of length {}", first, values.size()),
                    counted(axis.values.size(), "value"),
                    "Give all lists of a zip the same length.");
     }
@@ -1165,10 +1164,10 @@ struct Reader {
     reject_if(!of_runs || of_run, cycles,
               "can only be used with `show: traces` or `scatter`, and with an x that changes "
               "during a run",
-              "Use `show: traces`, and `cycle` or a measure as x.");
+              "Use `show: traces`. As x, use `cycle` or a measure.");
     reject_if(!plot.figure.empty(), cycles, "cannot be used with figure", "Leave out `figure`.");
     if (also != nullptr && (is_curve || plot.show != Show::mean)) {
-      reject(*also, "can only be used with `show: mean` and a number as y", "Leave it out.");
+      reject(*also, "needs `show: mean` and a y that is not a curve", "Leave it out.");
     } else if (const string twice = repeated_column(plot); !twice.empty()) {
       reject(also != nullptr ? *also : in, fmt::format("gives two columns the name {}", twice),
              "Rename one of these columns: `also: {NAME: measure}`.");
@@ -1268,9 +1267,9 @@ struct Reader {
   }
 
   // Reports each plot, claim, figure and panel whose name occurs twice or is already the name of a
-  // figure or panel of the supplement. Exception: the manifest may define plots and claims of a
-  // figure of the supplement if no C++ code computes this figure, and if the manifest does not list
-  // it in `figures`. `listed`: the names in `figures`.
+  // figure or panel of the supplement. Exception: plots and claims of a figure of the supplement
+  // may use the names of this figure and its panels if no C++ code computes the figure and
+  // `figures` does not list it. `listed`: the names in `figures`.
   void check_own_names(std::span<const Figure> supplement, const std::vector<string>& listed) {
     std::vector<std::pair<const Node*, string>> names, figures;  // {node, its figure}
     Names panels;

@@ -133,15 +133,15 @@ std::span<const Field> schema() {
           "addition jams at 0.547"),
       row<&P::wall_grain_recess_diameters>(
           "wall_grain_recess_diameters", "", "d", {0, 0.5}, kPrepare,
-          "wall grain centres lie behind the wall plane, at most this far. Measures that use the "
+          "largest distance of wall grain centres behind the wall plane. Measures that use the "
           "surface of a rough wall assume the value 0.25"),
       row<&P::wall_grain_draw>(
           "wall_grain_draw", "", "1", {0, 1e6}, {.stage = StageKind::prepare, .omitted_at = "0"},
           "each value gives other random positions of the wall grains for the same seed"),
       row<&P::wall_mass_grains_per_d2>("wall_mass_grains_per_d2", "", "m/d^2", above(0, 1e6),
-                                       kPrepare, "mass of the moving wall per area"),
+                                       kPrepare, "mass per area of the moving wall"),
       row<&P::wall_drag_grains_per_d2_s>("wall_drag_grains_per_d2_s", "", "m/(d^2 s)", {0, 1e9},
-                                         kPrepare, "drag constant of the moving wall per area"),
+                                         kPrepare, "drag constant per area of the moving wall"),
       // Preparation.
       row<&P::fill_packing_fraction>("fill_packing_fraction", "", "1", {1e-9, 0.35}, kPrepare,
                                      "volume fraction of the grains before they settle; they are "

@@ -17,8 +17,8 @@
 
 namespace shearcell {
 
-/// How a parameter enters the identity of a run. A parameter of `prepare` enters the records of all
-/// stages; any other parameter enters the record of its own stage only.
+/// How a parameter enters the records from which the ids of stages are computed. A parameter of
+/// `prepare` enters the records of all stages; others enter only the record of their own stage.
 struct Identity {
   /// The first stage whose record has an entry for the parameter. Empty if no record has one.
   std::optional<StageKind> stage = {};
@@ -29,8 +29,8 @@ struct Identity {
   /// Every new record holds this value, whatever the value of the parameter, because the parameter
   /// is no longer part of the identity. Records of older runs may hold other values.
   std::string_view recorded_as = {};
-  /// True if the parameter selects the parent stage. Records then hold the id of this stage instead
-  /// of the parameter.
+  /// True if the parameter selects the parent stage. Records then hold the id of the parent stage
+  /// instead of the parameter.
   bool selects_parent = false;
 
   /// Whether runs with different values of the parameter have different ids.
@@ -90,8 +90,8 @@ std::span<const Field> schema();
 /// The parameter with this name, or nullptr.
 const Field* find_field(std::string_view name);
 
-/// Whether the key is the length of a run or the number of seeds. Neither key is part of a run's
-/// id, but a zip may still set a length and a number of seeds for each variant.
+/// True for the keys that set the length of a run or the number of seeds. They are not part of a
+/// run's id, so `grid` cannot sweep them; `zip` can set them for each variant.
 inline bool is_length(std::string_view key) {
   return key == "cycles" || key == "seeds";
 }

@@ -78,10 +78,10 @@ std::string remedy_for_width(const Parameters& p, double width) {
 /// Places the grains between the wall planes of the cell. Throws ManifestError if the box or the
 /// grains do not fit the width and depth of the cell.
 ///
-/// Without a box, overlaps with the side walls are allowed up to the largest overlap of two grains
-/// in the file. Grains overlap if the packing is under load, or if it has not relaxed yet. Overlaps
-/// up to `usual_overlap` with the walls are always allowed, because the deepest contact under load
-/// can be at a wall. Deeper overlaps mean that the cell is narrower than the packing.
+/// Without a box, grains may overlap a side wall as deeply as two grains in the file overlap: a
+/// packing that is under load or has not relaxed also overlaps its walls. Overlaps with a wall of
+/// up to `usual_overlap` are always allowed, because the deepest contact under load can be at a
+/// wall. Deeper overlaps mean that the cell is narrower than the packing.
 State state_in(const Cell& cell, const PackingFile& grains, const std::string& path,
                const Parameters& p) {
   constexpr double tolerance = 1e-6;  // relative to the width
@@ -129,8 +129,8 @@ const Stage& recorded_run(const Manifest& manifest, const Scale& scale, const Va
   const std::string scale_of_start = start.scale.empty() ? scale.name : start.scale;
   if (start.experiment == manifest.experiment &&
       scale_name(scale_of_start) == scale_name(scale.name)) {
-    refuse(manifest.file, start.at, "start", "refers to the experiment and scale of this manifest",
-           "", "Choose another `experiment` for this manifest.");
+    refuse(manifest.file, start.at, "start", "must name another experiment or scale", "",
+           "Choose another `experiment` for this manifest.");
   }
   const auto is_it = [&](const Membership& m) {
     return m.newest && m.place.experiment == start.experiment &&
@@ -161,12 +161,12 @@ const Stage& recorded_run(const Manifest& manifest, const Scale& scale, const Va
                         start.variant.empty() ? "" : " and " + words_of(start.variant))
           : fmt::format("shear whose id begins with {}", start.run);
   if (found.size() != 1) {
-    refuse(
-        manifest.file, start.at, "start",
-        fmt::format("the store has {} {}", found.empty() ? "no" : "more than one", what), "",
-        found.empty() ? "Compute this run first, or use --store to open the store that contains it."
-        : start.run.empty() ? "Select one: `variant: \"KEY=VALUE\"`. Join several values by commas."
-                            : "Give more digits of the id.");
+    refuse(manifest.file, start.at, "start",
+           fmt::format("the store has {} {}", found.empty() ? "no" : "more than one", what), "",
+           found.empty()
+               ? "Compute this run first, or use --store to open the store that contains it."
+           : start.run.empty() ? "Select one: `variant: \"KEY=VALUE\"`. Put commas between pairs."
+                               : "Give more digits of the id.");
   }
   const double cycle = static_cast<double>(variant.parameters.start_cycle);
   const double newest = found.front()->cycle;
@@ -237,7 +237,7 @@ PlacedGrains placed(const PackingText& packing, const Parameters& p, std::uint64
                           remedy_for_width(p, z.maxCoeff() - z.minCoeff() + 1))
             : fmt::format(
                   "Rough walls have wall grains, whose positions depend on the seed. Use the "
-                  "seed of the packing, leave room for wall grains, or set `walls: smooth`{}.",
+                  "seed of the packing, a file with room for wall grains, or `walls: smooth`{}.",
                   packing.file.settles ? "" : " or, to let the grains settle first, `settle: {}`"));
   }
   return made;

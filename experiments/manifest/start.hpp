@@ -46,8 +46,8 @@ struct PlacedGrains {
 /// Places the grains of the file in the cell that `parameters` define. `seed` decides the positions
 /// of the wall grains. The box of the file must be as wide and deep as the cell. Without a box, the
 /// grains must fit into the cell; the bottom and top walls then touch the outermost grains. Throws
-/// ManifestError with the reason and the remedy, also if an overlap is larger than the run (or its
-/// settling) allows.
+/// ManifestError if the file is invalid, if the grains do not fit, or if an overlap is larger than
+/// the run allows (or, if the grains settle first, than settling allows).
 PlacedGrains placed(const PackingText& packing, const Parameters& parameters, std::uint64_t seed,
                     const Poll& poll = {});
 

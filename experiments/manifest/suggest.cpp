@@ -45,7 +45,7 @@ std::string as_words(string_view name) {
   return words;
 }
 
-// Least number of insertions, deletions, substitutions and swaps of neighbours from `a` to `b`.
+// Least number of edits from `a` to `b`. A swap of two adjacent characters counts as one edit.
 std::size_t edit_distance(string_view a, string_view b) {
   std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
   for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = i;

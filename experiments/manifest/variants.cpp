@@ -109,7 +109,7 @@ Parts parts_of(const std::string& list) {
   return parts;
 }
 
-/// Whether `parts` has all `wanted` parts. is_within() compares the values.
+/// Whether `parts` has all `wanted` parts. Values are compared with is_within().
 bool has_all(const Parts& parts, const Parts& wanted) {
   return std::ranges::all_of(wanted, [&](const auto& want) {
     return std::ranges::any_of(parts, [&](const auto& part) {

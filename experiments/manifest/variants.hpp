@@ -44,15 +44,15 @@ class Filter {
   explicit Filter(const std::vector<std::string>& wanted);
   explicit Filter(const std::vector<std::uint64_t>& wanted);
 
-  /// Whether the texts select `value`. The parts of a text may also come from `name`, the display
+  /// Whether the texts select `value`. A part of a text may also be a part of `name`, the display
   /// name of `value`. If several texts have the same keys, `value` must fit at least one of these
   /// texts: "a=1", "a=2" and "b=3" select values with b=3 that also have a=1 or a=2. Without texts,
   /// every value is selected.
   bool passes(const std::string& value, const std::string& name = "");
   /// The first of the given texts that selects none of the values in seen(), or null.
   const std::string* unfound() const;
-  /// The values that passes() was called with, each once, in the order of the calls. If a display
-  /// name has parts that its value lacks, the name is a further entry after the value.
+  /// The values that passes() was called with, each once, in the order of the calls. If the
+  /// display name of a value has parts that the value lacks, the name follows the value.
   const std::vector<std::string>& seen() const { return seen_; }
 
  private:

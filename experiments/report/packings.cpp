@@ -92,8 +92,8 @@ bool has_more_digits(const Measure& measure) {
          measure.name == "crystallite";
 }
 
-/// For each run, sets the number of wall grains and the size of one checkpoint in the page, both
-/// from the run's newest readable checkpoint. Removes runs without a readable checkpoint.
+/// Sets ChosenRun::wall_grains and ChosenRun::bytes from the run's newest readable checkpoint.
+/// Removes runs without a readable checkpoint.
 void weigh(const Store& store, std::vector<ChosenRun>& runs, Packings& packings) {
   const auto all = all_measures(MeasureKind::grains);
   const auto fields = static_cast<std::size_t>(

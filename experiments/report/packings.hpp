@@ -34,9 +34,9 @@ struct Packings : MeasureOutcome {
 };
 
 /// Encodes checkpoints of the experiments, in the order of `experiments`. If the checkpoints exceed
-/// the budget, each run shows fewer checkpoints, chosen by evenly(). If one checkpoint of each run
-/// already exceeds the budget, runs at the end of the list are left out. The same store gives the
-/// same result.
+/// the budget, each run shows fewer checkpoints, chosen by evenly(). If the total exceeds the
+/// budget even with one checkpoint per run, runs at the end of the list are left out. The same
+/// store gives the same result.
 Packings collect_packings(const Store& store, const std::vector<std::string>& experiments,
                           const RunSelection& selection, const PackingChoice& choice,
                           std::size_t workers, const ReadProgress& report);

@@ -149,7 +149,7 @@ json panel_json(const Table& table, const std::string& id, const ComputedFigure&
           {"csv", to_csv(table)}};
 }
 
-/// The newest record with the lineage of `figure`: name, manifests, runs, states, analysis version.
+/// The newest record that equals the lineage of `figure`; `made` and `outputs` are not compared.
 std::optional<FigureRecord> recorded_as(const Store& store, const ComputedFigure& figure) {
   std::optional<FigureRecord> newest;
   for (FigureRecord& record : figure_records(store)) {
@@ -347,7 +347,7 @@ json workflow(const Content& content, const Experiment& experiment) {
           step("Checkpoints", {{"done", "✓", "stored", in[CheckpointState::recorded]},
                                {"stopped", "‖", "pruned", in[CheckpointState::pruned]},
                                {"failed", "✗", "damaged", in[CheckpointState::rejected]},
-                               {"waiting", "·", "to come (at most)", left}}),
+                               {"waiting", "·", "or fewer to come", left}}),
           figures};
 }
 
@@ -452,7 +452,7 @@ json experiment_json(const Content& content, const Experiment& experiment) {
           {"runs", run_rows(content.packings, experiment)}};
 }
 
-/// The experiments, then the figures of all experiments together.
+/// The experiments, then the figures that use more than one experiment.
 json parts_of(const Content& content) {
   json parts = json::array();
   for (const Experiment& experiment : content.experiments) {

@@ -312,8 +312,8 @@ std::vector<MergeReport> merge_stores(Store& store,
                                       std::vector<Finding>* refused) {
   constexpr std::size_t kSampled = 3;
   std::vector<MergeReport> reports = store.merge(sources, runs);
-  // The seed comes from the head of `store`, so someone who forges a source cannot predict which
-  // checkpoints are checked.
+  // The seed comes from the head of `store`. Someone who forges one of the `sources` does not know
+  // this head, and so cannot predict which checkpoints are checked.
   const std::uint64_t seed = seed_of(store.head());
   for (const std::filesystem::path& source : sources) {
     MeasureCheck check = check_measures(store, source, kSampled, seed);

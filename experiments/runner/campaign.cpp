@@ -136,8 +136,8 @@ class Campaign {
   }
 
   CampaignResult run(std::size_t workers) {
-    // Tells other processes that this process is alive, even during long simulations.
-    // If a lease is lost, the store rejects records of the stage that was taken over.
+    // Tells other processes that this process is alive, even during long simulations. If another
+    // process has taken over a stage, the store rejects what this process records for the stage.
     const Repeated heartbeat(
         std::chrono::duration<double>(store_.lease_seconds() / 4),
         [this] { store_.renew_leases(); }, [](const std::exception&) {});
@@ -423,7 +423,7 @@ std::vector<StageJob> stages_to_resume(Store& store, const std::vector<std::stri
   for (const Stage& stage : stages) {
     if (prefixes.empty() && !look_at(store, stage).done) asked.push_back(stage.id);
   }
-  // Parents are included, because the last checkpoint of a parent may be lost.
+  // Parents are included: a parent whose last checkpoint is lost must be computed again.
   const std::set<std::string> wanted = with_parents(store, asked);
   std::erase_if(stages, [&](const Stage& stage) { return !wanted.contains(stage.id); });
   return jobs_of(stages, VariantNames(store));

@@ -141,7 +141,7 @@ class MeasureSources {
   struct Run {
     RunFacts facts = {};
     std::set<std::uint64_t> cadences = {1};
-    std::map<std::uint64_t, CheckpointRecord> checkpoints = {};  // by step; filled only for a shear
+    std::map<std::uint64_t, CheckpointRecord> checkpoints = {};  // by step; only of shear stages
     std::map<std::string, Digests> digests = {};                 // by SHA-256 of the checkpoint
   };
 

@@ -24,7 +24,7 @@ namespace {
 
 using nlohmann::json;
 
-// Largest number of a stage's checkpoints to list. Only forged stores have more.
+// Largest number of checkpoints listed for one stage. Only a stage in a forged store has more.
 constexpr std::size_t kMostListed = 1'000'000;
 constexpr double kMostCounted = 10'000;  // larger numbers of checkpoints are estimated
 
@@ -88,7 +88,7 @@ End end_by(const Stage& stage, const Ask& ask, std::span<const CheckpointRecord>
       if (!end.reached) end.undecided = &one;
       break;
     }
-    // A measure may be NaN (phi without interior grains). NaN never reaches the value of `until`.
+    // A measure may be NaN, such as phi if no grain is interior. NaN does not fulfil `until`.
     if (!(known->second.number(until->measure) >= until->value)) continue;
     end.reached = one.cycle;
     break;
@@ -236,7 +236,7 @@ std::vector<CheckpointCadence> cadences_of(const Stage& stage, std::span<const A
       throw StoreDamaged(fmt::format("run {:.8}: too many recorded checkpoint_phases: {}", stage.id,
                                      ask.checkpoint_phases.size()));
     }
-    if (ask.target_cycles == 0) continue;  // only cycle 0, which every shear records
+    if (ask.target_cycles == 0) continue;  // every shear stage records cycle 0
     cadences.push_back(
         {ask.checkpoint_every, steps_at(ask.checkpoint_phases, drive), ask.target_cycles});
   }
@@ -331,7 +331,7 @@ void measure_from(const Store& store, const Stage& stage, std::span<const Ask> a
   if (!chosen.front().lacking.empty()) refuse_unread(first);
   for (CheckpointMeasures& one : chosen) {
     if (!one.lacking.empty()) continue;
-    // If the checkpoint lacks a number, it is set to NaN, which never fulfils an `until`.
+    // A number that the checkpoint lacks is set to NaN, which never fulfils an `until`.
     for (const std::string& name : wanted) one.measures.numbers.try_emplace(name, std::nan(""));
     measures[one.sha256] = std::move(one.measures);
   }
@@ -448,7 +448,7 @@ std::string describe_end(const json& ended) {
   std::string why =
       fmt::format("{} >= {} at cycle {}{}", ended.at("measure").get<std::string>(),
                   ended.at("value").get<double>(), ended.at("reached_at_cycle").get<double>(),
-                  extra > 0 ? fmt::format(" and {}", counted(extra, "more cycle")) : "");
+                  extra > 0 ? fmt::format(", then {}", counted(extra, "more cycle")) : "");
   if (const json asked = member_of(ended, "cycles_asked"); !asked.is_null()) {
     why = fmt::format("an experiment asks for {}; {}", counted(asked.get<std::size_t>(), "cycle"),
                       why);

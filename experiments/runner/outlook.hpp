@@ -57,14 +57,14 @@ struct Outlook {
 /// Finds what remains to be computed of a recorded or a new stage. `asks`: the requests of
 /// experiments, which may differ from the recorded requests in `stage`. `checkpoints`: all
 /// checkpoints of the stage except rejected ones, by step (Listed::and_pruned). Let A be a request
-/// with an `until`. A completed stage needs no more cycles for A if a recorded request cannot end
-/// the stage earlier than A would. Such a recorded request has the same `until` as A and at least
-/// as many cycles. Its `checkpoint_every` is a multiple of A's `checkpoint_every`, so it tests
-/// `until` only at cycles at which A tests it. Throws StoreDamaged if a request is invalid.
+/// with an `until`. A completed stage needs no more cycles for A if a recorded request has the same
+/// `until` as A, at least as many cycles, and a `checkpoint_every` that is a multiple of A's
+/// `checkpoint_every`. This recorded request tests `until` only at cycles at which A tests `until`,
+/// so it cannot end the stage earlier than A would. Throws StoreDamaged if a request is invalid.
 Outlook outlook(const Stage& stage, std::span<const Ask> asks,
                 std::span<const CheckpointRecord> checkpoints, const KnownMeasures& measures = {});
 
-/// Motion of the walls in a shear. Empty for other kinds of stages, and for a stage with an
+/// Motion of the walls in a shear stage. Empty for other kinds of stages, and for a stage with an
 /// unreadable record, which `verify` reports.
 std::optional<Drive> shear_drive(const Stage& stage);
 
@@ -124,18 +124,18 @@ Outlook measured_outlook(const Store& store, const Stage& stage, std::span<const
 double end_for(const Store& store, const Stage& stage, const Ask& ask,
                const MeasureOptions& options);
 
-/// The checkpoints that `asks` request, including pruned ones. A request includes no checkpoint
-/// after its own end_for().
+/// The checkpoints that at least one of the requests `asks` covers, including pruned checkpoints.
+/// A request covers no checkpoint after the end_for() of this request.
 std::vector<CheckpointRecord> checkpoints_for(const Store& store, const Stage& stage,
                                               std::span<const Ask> asks,
                                               const MeasureOptions& options = {});
 
 /// The recorded Outlook::ended if the stage ended before `target_cycles` because of an `until`;
-/// otherwise null. If the stage ended later than this `until` requires, because another experiment
-/// asked for more cycles, the result also has "cycles_asked": the other experiment's target_cycles.
+/// otherwise null. If another experiment asked for more cycles than this `until` requires, and the
+/// stage has computed them, the result also has "cycles_asked": that experiment's target_cycles.
 nlohmann::json end_of(const Stage& stage);
 
-/// end_of() as text: "crystalline_percent >= 10 at cycle 25 and 15 more cycles"; "" for null.
+/// end_of() as text: "crystalline_percent >= 10 at cycle 25, then 15 more cycles"; "" for null.
 std::string describe_end(const nlohmann::json& ended);
 
 /// Mean cycle at which this `until` ended stages; empty if it ended no stage.
@@ -151,7 +151,7 @@ inline constexpr double kRunBytesPerGrain = 750;
 /// Memory [bytes] that a whole run may need.
 double run_bytes(const Geometry& shape);
 
-/// Size [bytes] of the file of a checkpoint, estimated from its grains and wall grains.
+/// Size [bytes] of a checkpoint file, estimated from the numbers of grains and wall grains.
 double checkpoint_bytes(const Geometry& shape);
 
 struct Rate {

@@ -10,9 +10,9 @@
 namespace shearcell {
 namespace {
 
-// Runs are grouped by experiment, SHA-256 of the manifest, and scale. Names are unique in a group.
-// For packings, this text replaces the SHA-256, so that the packings of all versions of a manifest
-// are in one group.
+// Variants are grouped by experiment, SHA-256 of the manifest, and scale. In a group, different
+// variants have different names. For packings, kPackings replaces the SHA-256, so that the packings
+// of all versions of a manifest are in one group.
 const std::string kPackings = "packings";
 
 /// All registered manifests, oldest first. If an experiment returned to an earlier manifest, this

@@ -15,8 +15,8 @@
 namespace shearcell {
 
 /// A registered manifest. `experiment`, `question` and `figures` (names of figures) are copies from
-/// `info`; newest_manifests() sets `content`, the parsed text. In a damaged store, the text may not
-/// match its SHA-256.
+/// `info`; newest_manifests() sets `content`, the parsed `text`. In a damaged store, `sha256` may
+/// differ from the SHA-256 of `text`.
 struct RegisteredManifest : ManifestText {
   std::string experiment;
   std::string question;
@@ -32,7 +32,7 @@ class VariantNames {
   using Labels = std::map<std::string, std::vector<VariantLabel>>;  ///< by SHA-256 of the manifest
   explicit VariantNames(const Store& store);
   VariantNames(const std::vector<Stage>& stages, const Labels& labels);
-  /// Display name of a stage in the experiment and scale of `place`; place.variant if it has none.
+  /// Display name of the variant of `stage` at `place`; place.variant if no such name is known.
   std::string of(const Stage& stage, const Place& place) const;
 
  private:

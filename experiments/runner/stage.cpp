@@ -411,7 +411,7 @@ class StageAttempt {
     });
   }
 
-  // Records the missing checkpoints of a completed run at these steps.
+  // Records the missing checkpoints of a completed run. `steps`: steps of these checkpoints.
   StageOutcome fill(const std::vector<std::uint64_t>& steps) {
     Beginning beginning = beginning_of(store_, plan_, options_, nullptr, steps.front());
     const nlohmann::json& ends = plan_.stage.ends;

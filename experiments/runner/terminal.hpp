@@ -34,8 +34,8 @@ std::size_t columns_of(std::string_view text);
 std::string_view first_columns(std::string_view text, std::size_t count);
 
 /// Wraps a help page to `width` columns. The lines of a paragraph are joined and wrapped again.
-/// An indented line is wrapped alone. It may be a row of a table: then its continuation lines are
-/// indented as far as its last column, which begins after two or more blanks.
+/// An indented line is wrapped alone. If two or more blanks divide an indented line into two
+/// columns, its continuation lines are indented to the beginning of the second column.
 std::string filled(std::string_view help, std::size_t width);
 
 /// fmt::print() for untrusted texts: control characters are escaped.

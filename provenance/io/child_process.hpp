@@ -53,8 +53,8 @@ class ChildProcess {
   /// Waits until the program ends and returns exit_code().
   int wait();
 
-  /// Processor time of the program [s]. While the program runs, this excludes the processes that
-  /// the program started. After the program has ended, this includes those for which it waited.
+  /// Processor time of the program [s]. While the program runs, its child processes are not
+  /// counted. After the end, the child processes for which the program waited are counted, too.
   double core_seconds() const;
 
  private:

@@ -157,7 +157,7 @@ void require_ours(const fs::path& path, const std::function<bool(std::string_vie
 
 void write_output(const fs::path& path, std::string_view bytes) {
   const fs::path parent = path.has_parent_path() ? path.parent_path() : ".";
-  std::error_code ignored;  // if this fails, the next open() reports the reason
+  std::error_code ignored;  // if create_directories() fails, open() reports the reason
   fs::create_directories(parent, ignored);
   const Descriptor folder(open(parent.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC));
   if (!folder.valid()) fail_on(path, "write");

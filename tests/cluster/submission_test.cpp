@@ -137,7 +137,7 @@ TEST_F(Submitted, TasksEndRunsByUntil) {
   const Stage run = runs_of_kind(store_, "shear").front();
   EXPECT_EQ(run.state, StageState::completed);
   EXPECT_EQ(run.cycle, 1);
-  EXPECT_EQ(describe_end(end_of(run)), "phi >= 0.1 at cycle 0 and 1 more cycle");
+  EXPECT_EQ(describe_end(end_of(run)), "phi >= 0.1 at cycle 0, then 1 more cycle");
   EXPECT_TRUE(shares_of({plan}, &store_).empty());
   const Plan edited = expand(parse_manifest(text + "# edited\n", "tiny.yaml"));
   EXPECT_TRUE(shares_of({edited}, &store_).empty()) << "its `until` is the same";

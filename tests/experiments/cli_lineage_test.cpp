@@ -82,7 +82,7 @@ TEST_F(CommandLineLineage, CountsCheckpointsApartFromRuns) {
       }
       store.record("figure/other", {"FigureGenerated", facts});
     }
-    expect(4, {"show", file}, {counts, "the states in the log differ"});
+    expect(4, {"show", file}, {counts, "the checkpoint states in the log differ"});
   }
 }
 

@@ -281,7 +281,7 @@ TEST_F(Prune, RegenerateRestoresTheFilesOfSelectedRuns) {
   const std::size_t left = objects();
   ASSERT_LT(left, files);
   expect_refused({"regenerate"}, {"--experiment E or --all"});
-  expect_refused({"regenerate", "--all", "0123abcd"}, {"either checkpoints, or runs"});
+  expect_refused({"regenerate", "--all", "0123abcd"}, {"either name checkpoints, or select runs"});
   expect_refused({"regenerate", "--experiment", "tini"}, {"tini"});
   expect(0, {"regenerate", "--experiment", "tiny", "--variant", "fluid=cell", "--seed", "2"},
          {"the same bytes"});

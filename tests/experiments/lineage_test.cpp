@@ -187,7 +187,8 @@ TEST_F(FigureLineageTest, NamesRunsWhoseStatesDiffer) {
     const std::vector<Finding> faults = check_inputs(store_, lineage);
     ASSERT_EQ(faults.size(), 1U) << key;
     EXPECT_EQ(faults[0].run, lineage.inputs[1].run);
-    EXPECT_EQ(faults[0].message, "the states in the log differ from the figure's record");
+    EXPECT_EQ(faults[0].message,
+              "the checkpoint states in the log differ from those in the figure's record");
   }
 }
 

@@ -64,8 +64,8 @@ const std::string kData =
     "Write the box as xlo xhi, ylo yhi and zlo zhi, and the sections Atoms (atom_style sphere or "
     "atomic) and Velocities.";
 const std::string kDump =
-    "Write ITEM: BOX BOUNDS and ITEM: UNITS as LAMMPS does, and the columns id x y z vx vy vz, not "
-    "scaled.";
+    "Write ITEM: BOX BOUNDS and ITEM: UNITS as in LAMMPS. Write the columns id x y z vx vy vz. The "
+    "coordinates must not be scaled.";
 const std::string kCsv =
     kFormats + " Velocities are vx_m_per_s and so on. The unit can be m, d, mm, cm or um.";
 const std::string kOrRemove = " Or remove this part.", kOrRemoveColumn = " Or remove this column.";
@@ -78,8 +78,8 @@ const std::string kTwoUnits =
     " Write all lengths in one unit, and state it in the file or as `unit` in the manifest.";
 const std::string kEqual =
     " This program needs equal grains. Check the unit. If it is right, set `diameter_m` or scale "
-    "the file. If the column has no diameters or radii, remove it. To shear unequal grains, use "
-    "LAMMPS (`shearcell export --to lammps`).";
+    "the lengths in the file. If the column holds something other than diameters or radii, remove "
+    "the column. To shear unequal grains, use LAMMPS (`shearcell export --to lammps`).";
 const std::string kDeep =
     "At most 0.25 d are allowed (`max_overlap_diameters`). Check `diameter_m` and the unit of "
     "the lengths. If both are right, let the grains relax in the program that made the file.";

@@ -335,7 +335,7 @@ TEST_F(Started, WhatDoesNotFitTheStoreIsRefused) {
   compute_here(tiny_manifest("", kBothFluids));
   EXPECT_NE(refusal(clones(""))
                 .find("more than one run of tiny with seed 1. Select one: `variant: "
-                      "\"KEY=VALUE\"`. Join several values by commas."),
+                      "\"KEY=VALUE\"`. Put commas between pairs."),
             std::string::npos);
   EXPECT_EQ(refusal(clones(", variant: \"fluid=cell\"")), "");
   EXPECT_EQ(refusal(clones(", variant: {fluid: cell}")), "");
@@ -353,7 +353,7 @@ TEST_F(Started, WhatDoesNotFitTheStoreIsRefused) {
   EXPECT_EQ(refusal(clones(late, "  drag_kg_per_s: 1.28e-2\n  stiffness_N_per_m: 600\n")), "")
       << "what acts on the grains may change";
   EXPECT_NE(refusal(tiny_manifest("", "start: {experiment: tiny, seed: 1, cycle: 1}\n"))
-                .find("start: refers to the experiment and scale of this manifest."),
+                .find("start: must name another experiment or scale."),
             std::string::npos);
 }
 

@@ -94,7 +94,7 @@ TEST(OutlookOfUntil, IsDescribed) {
   const nlohmann::json why =
       ended(std::vector{ask(9, Until{"crystalline_percent", 10, 2})}, measured({1, 10, 20}));
   ASSERT_FALSE(why.is_null());
-  EXPECT_EQ(describe_end(why), "crystalline_percent >= 10 at cycle 2 and 2 more cycles");
+  EXPECT_EQ(describe_end(why), "crystalline_percent >= 10 at cycle 2, then 2 more cycles");
   EXPECT_EQ(describe_end(nullptr), "");
 }
 

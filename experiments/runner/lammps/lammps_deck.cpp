@@ -196,8 +196,9 @@ pair_coeff * * ${{law}})",
 
   // Side planes rotate about their upper ends. LAMMPS moves a region relative to its first pose.
   // In the script for users, all planes use fix wall/gran/region. In the script for the engine, the
-  // side planes use fix wall/region, which reports its force only for the first step. The bottom
-  // and top planes use fix wall/harmonic: the force on the moving plane is needed at each step.
+  // side planes use fix wall/region, which reports the force on a plane only for the first step.
+  // The bottom and top planes use fix wall/harmonic, because the force on the moving plane is
+  // needed at each step.
   void plane(std::size_t side) {
     const auto [point, normal] = wall_planes(cell_, pose_)[side];
     const double x = point[0] * d_, y = point[1] * d_, k = scene_.stiffness * m_;

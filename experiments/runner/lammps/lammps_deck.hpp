@@ -38,8 +38,8 @@ std::string lammps_deck(const LammpsTask& task);
 
 /// An input script for users, with comments. The script continues from the state in the file
 /// `data`. The task's units must be SI. The script computes one cycle (one second if the cell is
-/// not sheared), or the number of steps in its variable `steps`, and writes NAME.lammpstrj and
-/// NAME_end.dump. The task's `end`, `stride` and `check_every` have no effect.
+/// not sheared); users can set another number of steps with `lmp -var steps`. The script writes
+/// NAME.lammpstrj and NAME_end.dump. The task's `end`, `stride` and `check_every` have no effect.
 std::string lammps_script(const LammpsTask& task, std::string_view data, std::string_view name);
 
 /// Size limit [bytes] for files that LAMMPS writes, far above their usual sizes.
