@@ -23,11 +23,11 @@ double normal_hazard(double z) {
   return std::sqrt(2 / std::numbers::pi) * std::exp(-z * z / 2) / std::erfc(z / std::sqrt(2.0));
 }
 
-/// ln L of one value at z = (y - mu) / sigma, -d(ln L)/dz and -d^2(ln L)/dz^2.
+/// Logarithm of the likelihood L of one value, and its derivatives, at z = (y - mu) / sigma.
 struct Term {
-  double logarithm = 0;
-  double first = 0;
-  double second = 0;
+  double logarithm = 0;  ///< ln L
+  double first = 0;      ///< -d(ln L)/dz
+  double second = 0;     ///< -d^2(ln L)/dz^2
 };
 using Distribution = Term (*)(double z, bool censored);
 

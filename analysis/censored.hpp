@@ -47,7 +47,7 @@ std::optional<Estimate> censored_mean(std::span<const CensoredValue> values,
 /// A residual is a value minus the mean of its group. Pairs with a censored value are included: the
 /// unknown residual of this value is replaced by its conditional expectation. The condition is that
 /// the true value is larger than the censored value. Treating a[k] - b[k] as one censored value
-/// would give a bias, because whether this difference is censored depends on b[k]. If no value is
+/// would give a bias, because the censoring of this difference depends on b[k]. If no value is
 /// censored, the interval is Welch's interval or, for pairs, Student's interval. Empty if a group
 /// has fewer than two observed values.
 std::optional<Estimate> censored_difference(std::span<const CensoredValue> a,

@@ -201,7 +201,7 @@ std::vector<ChartPoint> points_of(const Series& series) {
 
 void name_run_counts(Table& table) {
   std::vector<Series*> means;
-  std::vector<std::string> counts;  // text for each mean; "" if no run is missing
+  std::vector<std::string> counts;  // for each mean: "3 to 5 of 6"; "" if no run is missing
   for (Series& series : table.chart.series) {
     double fewest = std::numeric_limits<double>::infinity(), most = 0;
     for (const ChartPoint& point : points_of(series)) {

@@ -76,7 +76,7 @@ struct ChartPoint {
   double x = 0;
   double y = 0;
   std::optional<double> x_error = std::nullopt;  ///< standard error; stored, but not drawn
-  std::optional<double> y_error = std::nullopt;  ///< half of the bar or band
+  std::optional<double> y_error = std::nullopt;  ///< bar or band from y - y_error to y + y_error
   std::optional<double> runs = std::nullopt;     ///< number of runs averaged in y
 };
 
@@ -87,7 +87,7 @@ struct Series {
   std::string colour = {};   ///< "#rrggbb"
   int point = 7;             ///< symbol: 0 none, 4 square, 6 circle, 8 triangle, 10 triangle down,
                              ///< 12 diamond; add 1 for the filled symbol
-  Join join = Join::none;    ///< points are joined in their order
+  Join join = Join::none;    ///< line between successive points
   bool band = false;         ///< errors of y are drawn as a band
   bool thin = false;         ///< a thin line, for one run of many
   bool large = false;        ///< larger points, which stay visible around smaller points
@@ -163,13 +163,13 @@ nlohmann::ordered_json to_json(const Table& table);
 std::vector<ChartPoint> points_of(const Series& series);
 
 /// Adds the number of runs per point, such as "(3 to 5 runs)", to the title of each series in which
-/// this number varies or is less than Series::runs. Readers need this number: if different runs
-/// contribute to two points, the means can differ although the value of each run is constant. If
-/// all series have the same numbers, the caption gives them once.
+/// this number varies or is less than Series::runs. Readers need this number: if two points average
+/// over different runs, the means can differ even if no run changes between these points. If all
+/// series have the same numbers, the caption gives them once.
 void name_run_counts(Table& table);
 
 /// Number of significant digits for values from `low` to `high`: 9, or more (up to 17) if needed to
-/// show high - low with five digits. A difference below 1e-11 times the values is rounding error.
+/// show high - low to five digits. A relative difference up to 1e-11 is ignored as rounding error.
 int digits_between(double low, double high);
 std::string digits(double value, int significant = 9);
 

@@ -125,9 +125,9 @@ Verdict decided_by(const ClaimSpec& claim, const Claim& stated, RunGroup a, RunG
 /// A look (interim analysis) at n seeds uses the first n of the seeds that both sides have. The
 /// look is made when all runs of these seeds have ended. If no looks are planned, there is one
 /// look, at all seeds that at least one side has. Returns the verdict of the first look that
-/// decides the claim. If no look decides the claim, the verdict is undecided. The numbers of an
-/// undecided verdict use the seeds before the first seed with a planned run (Frame::pending). If
-/// the first seed of all has a planned run, or if no seed has one, they use all seeds. Seeds that
+/// decides the claim. If no look decides the claim, the verdict is undecided. Its numbers are then
+/// computed from the seeds before the first seed with a planned run (Frame::pending). If there are
+/// no seeds before it, or if no run is planned, the numbers are computed from all seeds. Seeds that
 /// are in no look are used only in Verdict::note. `planned`: the planned runs of the two sides.
 Verdict at_looks(const ClaimSpec& claim, Claim stated, const ClaimSides& sides,
                  const ClaimSides& planned, const Frame& frame) {

@@ -88,8 +88,8 @@ std::vector<ClaimSpec> each_of(const ClaimSpec& claim, std::span<const FrameRun>
 /// Converts to a Claim. Claim::margin is negative for Relation::lower. `sides`: ClaimSides::names.
 Claim stated(const ClaimSpec& claim, const std::array<std::string, 2>& sides);
 
-/// One sentence for each reason why the sides cannot be compared. `planned`: whether the sides hold
-/// planned runs. A side without runs gives a sentence only if `planned` is true.
+/// One sentence for each reason why the sides cannot be compared. `planned`: true for planned runs,
+/// false for recorded runs. A lack of planned runs is a reason; a lack of recorded runs is not.
 std::vector<std::string> problems_of_sides(const ClaimSpec& claim, const ClaimSides& sides,
                                            bool planned);
 

@@ -42,8 +42,8 @@ struct Followed {
 /// The first descendant is the crystallite itself. A grain is remembered if it belonged to a
 /// descendant in one of the last `remembered_cycles` cycles; cycles without a descendant are not
 /// counted. A foreign crystallite is a crystallite of the previous cycle that is not a descendant.
-/// A crystallite C of the current cycle continues a foreign crystallite X if more of C's grains
-/// come from X than are remembered. A remembered grain does not count as a grain from X. C is a
+/// A crystallite C of the current cycle continues a foreign crystallite X if C has more grains from
+/// X than remembered grains. A remembered grain does not count as a grain from X. C is a
 /// descendant if it has at least `least_descendant` grains, has a remembered grain, and continues
 /// no foreign crystallite. Let G be the grains of all descendants in the latest cycle that had any.
 /// The followed crystallite has merged if the current cycle has no descendant, and if a crystallite

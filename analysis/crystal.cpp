@@ -42,8 +42,8 @@ std::vector<std::int32_t> unpacked(const json& result, const char* key) {
   return values;
 }
 
-/// Whether the map is consistent: grain ids ascend; the size of each crystallite is the number of
-/// grains with its label, and is not 0; there are no other labels; centres and the cell are finite.
+/// Whether grain ids ascend, labels are indices into `size`, each size is at least 1 and equals the
+/// number of grains with this label, and centres and the cell are finite.
 bool is_valid(const CrystalliteMap& map) {
   if (map.label.size() != map.grain.size() || map.centre.size() != map.size.size()) return false;
   if (!map.grain.empty() && map.grain.front() < 0) return false;

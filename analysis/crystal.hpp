@@ -61,8 +61,9 @@ struct CrystalliteMap {
 
 /// `crystallite`: the index of each grain's crystallite, from crystallites(). Centres refer to the
 /// untilted cell: the displacement of the side walls at the height of each grain is subtracted from
-/// its x, so that 0 <= x <= width. z is the circular mean in [0, depth), because the cell is
-/// periodic along z. It is accurate for crystallites that are small compared with the depth.
+/// its x, so that 0 <= x <= width. The z of a centre is a circular mean in [0, depth), because
+/// the cell is periodic along z. This mean is accurate for crystallites much smaller than the
+/// depth.
 CrystalliteMap crystallite_map(std::span<const std::int32_t> crystallite, const Cell& cell,
                                const WallPose& pose, const Eigen::Matrix3Xd& positions);
 

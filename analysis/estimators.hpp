@@ -28,7 +28,7 @@ struct Estimator {
   std::string_view name;      ///< name of the estimator in manifests
   std::string_view meaning;   ///< description in REFERENCE.md
   std::string_view key = {};  ///< a key that a claim must have to use this estimator; "": none
-  /// The estimator uses measures of runs (true), of checkpoints (false), or either kind (empty).
+  /// Whether ClaimSpec::compare is a measure of the run or of checkpoints. Empty: both are allowed.
   std::optional<bool> of_run = false;
   bool over_variants = false;  ///< a group of runs may contain several variants
   /// Claims with this estimator always have one group. With any other estimator, a claim has one

@@ -71,7 +71,7 @@ inline constexpr auto kNames<Missing> = names_in_order<Missing>("", "no checkpoi
 struct RunValue {
   double value = 0;
   Missing missing = Missing::nothing;
-  /// For a censored run, which ended before the event: lower limit of the number. NaN: unknown.
+  /// For a censored run (it ended before the event): lower limit of the value. NaN: no limit.
   double above = std::numeric_limits<double>::quiet_NaN();
 
   double or_nan() const;

@@ -13,9 +13,9 @@
 namespace shearcell {
 namespace {
 
-// Pixels, at 96 px per inch: widths of 8.6 cm and 17.8 cm, and 8 pt type.
+// In pixels, at 96 px per inch. The widths are 8.6 cm and 17.8 cm.
 constexpr int column_width = 325, double_width = 673, chart_height = 215, key_row = 15;
-constexpr double type_size = 10.67;
+constexpr double type_size = 10.67;  // 8 pt
 
 constexpr std::string_view style =
     "set encoding utf8\n"

@@ -125,7 +125,7 @@ void follow(const CrystalliteMap& now, const CrystalliteMap& later, GrowthBySize
   std::vector<Outcome> fates(now.size.size());
   // The crystallite of `now` that contributed the most grains to one crystallite of `later`.
   struct Origin {
-    std::int32_t most = 0, size = 0;  // number of grains that it contributed; its size
+    std::int32_t most = 0, size = 0;  // number of contributed grains; size in `now`
   };
   std::vector<Origin> origins(later.size.size());
   for (const auto& [labels, grains] : shared) {
@@ -148,7 +148,7 @@ void follow(const CrystalliteMap& now, const CrystalliteMap& later, GrowthBySize
     if (2 * larger > size) {
       ++(origins[end].size > size ? count.absorbed : count.grew);
     } else if (2 * (size - larger - same) > size) {
-      // Here, more than half of the grains are in smaller crystallites or in no crystallite.
+      // size - larger - same: number of grains in smaller crystallites or in no crystallite.
       ++(2 * smaller > size ? count.shrank : count.vanished);
     }
   }

@@ -15,20 +15,19 @@
 
 namespace shearcell {
 
-/// Numbers of crystallites of one size s, by where their grains are at a later checkpoint. Each
-/// crystallite is counted at most once. It is not counted, for example, if more than half of its
-/// grains are later in crystallites of size s.
+/// Numbers of crystallites that have s grains at one checkpoint and grow or shrink until a later
+/// checkpoint. Each crystallite is counted at most once. A crystallite is not counted, for example,
+/// if more than half of its grains are later in crystallites of s grains.
 struct GrowthCount {
-  /// Crystallites of which more than half of the grains are later in crystallites larger than s,
-  /// except those counted in `absorbed`.
+  /// More than half of the grains are later in larger crystallites. Excludes `absorbed`.
   std::size_t grew = 0;
-  /// Like `grew`, but a larger crystallite absorbed the grains: of the earlier crystallites, the
-  /// one that contributed the most grains to the later crystallite is larger than s.
+  /// More than half of the grains are later in larger crystallites, and the crystallite was
+  /// absorbed. Let E be the later crystallite that has the most of its grains. The earlier
+  /// crystallite from which E has the most grains has more than s grains.
   std::size_t absorbed = 0;
-  /// Crystallites of which more than half of the grains are later in crystallites smaller than s.
+  /// More than half of the grains are later in smaller crystallites.
   std::size_t shrank = 0;
-  /// Crystallites of which more than half of the grains are later in crystallites smaller than s or
-  /// in no crystallite, except those counted in `shrank`.
+  /// More than half of the grains are later in smaller crystallites or in none. Excludes `shrank`.
   std::size_t vanished = 0;
 
   std::size_t larger() const { return grew + absorbed; }     ///< "growing" in the supplement
@@ -41,7 +40,7 @@ struct GrowthCount {
 /// was followed.
 using GrowthBySize = std::map<std::int32_t, GrowthCount>;
 
-/// Adds the crystallites of `now` to `counts`, by where their grains are in `later`.
+/// Adds the crystallites of `now` to `counts`. `later` is the map of the later checkpoint.
 void follow(const CrystalliteMap& now, const CrystalliteMap& later, GrowthBySize& counts);
 
 /// Counts over all pairs of a run's checkpoints that are `cycles` apart. One crystallite is counted

@@ -54,10 +54,10 @@ enum class MeasureKind { number, count, curve, grains, run };
 /// How a measure of each grain is displayed: from `low` to `high`, or as classes 0, 1, ...
 struct GrainScale {
   double low = 0, high = 0;
-  std::string_view parameter = {};  ///< parameter of the run that multiplies `low` and `high`
+  std::string_view parameter = {};  ///< run parameter by which `low` and `high` are multiplied
   bool logarithmic = false;
   std::vector<std::string> classes = {};
-  bool whole = false;         ///< the value is a whole number, such as the number of a class
+  bool whole = false;         ///< values are integers
   double of_wall_grains = 0;  ///< the value that exports write for wall grains
 };
 

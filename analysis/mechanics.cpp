@@ -202,8 +202,8 @@ std::vector<Provider> mechanics_providers() {
              "kinetic part of the pressure, from velocities minus the mean flow"},
             {"coordination", "1", "contacts per interior grain"},
             {"rattlers_percent", "%",
-             "interior grains that are rattlers: fewer than four contacts with walls and "
-             "with grains that are not rattlers"},
+             "percentage of interior grains that are rattlers; a rattler has fewer than four "
+             "contacts, not counting contacts with rattlers"},
             {"coordination_without_rattlers", "1",
              "contacts per interior grain that is not a rattler, excluding contacts with rattlers"},
             {"force_bottom_x_N", "N", "x component of the grains' force on the bottom wall"},
@@ -219,7 +219,7 @@ std::vector<Provider> mechanics_providers() {
             {"kinetic_energy_per_grain_J", "J",
              "kinetic energy per grain, half a time step before the checkpoint"},
             {"gravitational_energy_per_grain_J", "J",
-             "weight of a grain times the mean height of the grains above the bottom wall"}},
+             "weight of a grain times the grains' mean height above the bottom wall"}},
        .compute = compute}};
 }
 

@@ -48,7 +48,7 @@ using Shares = std::map<double, std::vector<Share>>;  ///< by amplitude
 
 /// 1 / variance of the normal priors on the coefficients of ln c. The standard deviation is 3 for
 /// the linear term and 0.5 for the quadratic term. Fits give coefficients of about 1 and 0.1. With
-/// these priors the likelihood has a maximum even for a few events. [choice]
+/// these priors the likelihood has a maximum even if there are only a few events. [choice]
 const Eigen::Vector3d prior(0, 1.0 / 9, 4);
 
 struct Likelihood {
@@ -119,8 +119,8 @@ Likelihood likelihood(const Shares& amplitudes, double exponent) {
   return sum;
 }
 
-/// Whether the runs have the comparison runs that size_exponent() requires. The size of a cell is
-/// its N, because the number of interior grains differs slightly between seeds of one N.
+/// Whether the comparison runs that size_exponent() requires exist. Cells are compared by N,
+/// because the number of grains in the region differs slightly between cells of the same N.
 bool is_bounded(const Shares& amplitudes) {
   bool larger = false, smaller = false;
   for (const auto& [amplitude, shares] : amplitudes) {
@@ -143,7 +143,7 @@ double variance_between_packings(const Likelihood& at) {
   return std::max(1.0, squares / at.information);
 }
 
-/// The point between `low` and `high` above which `holds` is true, by bisection.
+/// Bisection between `low` and `high`: `holds` is false below the result and true above it.
 double bisected(double low, double high, const auto& holds) {
   for (int halving = 0; halving < 30; ++halving) {
     const double middle = (low + high) / 2;

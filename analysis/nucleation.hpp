@@ -84,16 +84,17 @@ inline constexpr double rate_step = 0.0005;
 
 /// Maximum-likelihood estimate of the exponent a in rate = c(amplitude, phi) n^a, where n is the
 /// number of grains in the region. Onsets are a Poisson process, and ln c is a parabola in phi for
-/// each amplitude. Since a run has at most one onset, the interval comes from the profile
-/// likelihood (D. R. Cox and D. Oakes, Analysis of Survival Data, 1984). The interval contains all
-/// exponents whose log-likelihood is at most a certain amount below the maximum. If runs share a
-/// packing, this amount is multiplied by a factor of at least 1: the variance of the packings'
-/// scores, divided by the variance expected for independent runs (L. Pace, A. Salvan, N. Sartori,
-/// Stat. Sinica 21, 129 (2011)).
+/// each amplitude. A run counts until its onset. The interval comes from the profile likelihood, as
+/// is usual for such data (D. R. Cox and D. Oakes, Analysis of Survival Data, 1984). The interval
+/// contains all exponents whose log-likelihood is at most a certain amount below the maximum. If
+/// runs share a packing, this amount is multiplied by a factor of at least 1: the variance of the
+/// packings' scores, divided by the variance expected for independent runs (L. Pace, A. Salvan, N.
+/// Sartori, Stat. Sinica 21, 129 (2011)).
 ///
-/// Empty for fewer than least_runs packings. Also empty unless at least one onset has a comparison
-/// run in a cell of fewer grains, and at least one onset has a comparison run in a cell of more
-/// grains. The comparison run has the same amplitude, and passes nearly the phi of the onset.
+/// Empty if the runs have fewer than least_runs different packings. Also empty unless at least one
+/// onset has a comparison run in a cell of fewer grains, and at least one onset has a comparison
+/// run in a cell of more grains. A comparison run has the same amplitude, and has a phi within
+/// phi_bin of the phi of the onset.
 std::optional<Estimate> size_exponent(RunGroup runs, Region region,
                                       double level = confidence_level);
 

@@ -107,14 +107,14 @@ std::vector<Provider> onset_providers() {
                    "nearest to that of the run",
                    +critical, "the critical size"),
             of_run("onset_size_cycle",
-                   "cycle of the onset by method 1, where the largest crystallite reaches the "
-                   "critical size",
+                   "cycle at which the largest crystallite reaches the critical size: the onset "
+                   "by method 1",
                    at_onset<onset_by_size, &R::cycle>, "the cycle of the onset", true),
             of_run("onset_size_phi", "volume fraction at onset_size_cycle, the onset by method 1",
                    at_onset<onset_by_size, &R::phi>, "phi at the onset"),
             of_run("onset_slope_cycle",
-                   "cycle of the onset by method 2, where the logarithm of the size of the largest "
-                   "crystallite rises most steeply with phi",
+                   "cycle at which the logarithm of the size of the largest crystallite rises most "
+                   "steeply with phi: the onset by method 2",
                    at_onset<onset_by_slope, &R::cycle>, "the cycle of the onset by method 2"),
             of_run("onset_slope_phi", "volume fraction at onset_slope_cycle, the onset by method 2",
                    at_onset<onset_by_slope, &R::phi>, "phi at the onset")},

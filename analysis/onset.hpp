@@ -32,8 +32,8 @@ RunOnset onset_by_size(const FrameRun& run);
 
 /// Method 2: the phi at which ln(largest crystallite) rises most steeply with phi. The slope at phi
 /// is the slope of the least-squares line through the checkpoints within `slope_window / 2` of phi.
-/// A value of phi is used only if at least four checkpoints lie within this distance, and if the
-/// range of phi that contains this value and these checkpoints is at least `slope_window / 2` wide.
+/// A value of phi is used only if at least four checkpoints lie within this distance, and if
+/// this value and these checkpoints span a range of phi of at least `slope_window / 2`.
 /// A run is `unclear` if no value of phi that is used has a positive slope. At a checkpoint without
 /// crystallites, the size of the largest crystallite is taken as 1. A run that is `never` or
 /// `before_start` by method 1 is so by method 2, too. [choice]

@@ -167,7 +167,7 @@ MeasuredCurve structure_factor(const MeasureInput& input) {
   if (!(region.width > 0 && region.height > 0) || sites.cols() == 0) return {};
   const WaveVector most = largest_components(region);
   // Limits the computing time for a forged file whose cell is far larger than the grains need. In a
-  // real packing, the compared sum is no larger than a third of this limit.
+  // real packing, most[0] + most[1] + most[2] is at most a third of the limit.
   const double largest_sum = 60 * std::cbrt(static_cast<double>(sites.cols()));
   if (most[0] + most[1] + most[2] > std::max(1000.0, largest_sum)) return {};
   const Eigen::ArrayXd y = sites.row(1).array() - region.bottom;

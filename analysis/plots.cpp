@@ -171,7 +171,7 @@ struct Trace : Selected {
 /// Runs that are drawn as one curve.
 struct Curve {
   json key;             ///< the keys that distinguish curves, and their values in this curve
-  std::string variant;  ///< `key` as text; in the CSV with ';' instead of ','
+  std::string variant;  ///< `key` as text; set_curves() replaces ',' by ';'
   std::vector<Trace> traces = {};
   std::size_t style = 0;  ///< index in PlotSpec::series; series.size() if there is no style
   Text title = {};
@@ -258,8 +258,8 @@ void average_x(std::vector<Curve>& curves) {
 // --- Group ---
 
 /// The curves of a panel. If PlotSpec::by is set, each value of `by` gets a curve. Otherwise each
-/// variant gets a curve, with one exception: if PlotSpec::panel is set or x has one value per run,
-/// variants that differ only in the panel's parameter or in x share a curve.
+/// variant gets a curve. If PlotSpec::panel is set or x has one value per run, the parameter of the
+/// panel and the parameters in x do not distinguish curves.
 std::vector<Curve> curves_of(const PlotSpec& plot, std::span<const Selected> runs) {
   const bool by_variant =
       against(plot) != Against::number_of_run && plot.by.empty() && plot.panel.empty();
@@ -562,7 +562,7 @@ Axis axis_of(const std::string& key) {
   return is_expression(key) ? Axis{.name = key} : named_axis(key, "1");
 }
 
-/// "cycle" if all runs are shears, "step" if all are stiffenings, otherwise "cycle or step".
+/// "cycle" if all runs are sheared, "step" if all are stiffened, otherwise "cycle or step".
 std::string_view word_for_cycle(std::span<const Selected> runs) {
   const auto stiffens = [](const Selected& one) {
     return !one.checkpoints.empty() &&
@@ -1014,8 +1014,8 @@ FigureResult make_plot(const PlotSpec& plot, const Frame& frame, const NameVaria
   return result;
 }
 
-/// First and last cycle at which the parts need measures that a further simulation computes
-/// (ComputedFrom::simulation). Empty if such measures are needed at all cycles, or at none.
+/// First and last cycle at which the figures `parts` need measures of ComputedFrom::simulation.
+/// Empty if such measures are needed at all cycles, or at none.
 std::optional<std::array<std::uint64_t, 2>> simulated_by(std::span<const Figure> parts) {
   std::optional<std::array<std::uint64_t, 2>> hull;
   for (const Figure& part : parts) {

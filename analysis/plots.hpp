@@ -75,8 +75,8 @@ struct PlotSpec {
   std::string xlabel = {}, ylabel = {};  ///< may contain formulas; if empty, made from x and y
   std::vector<SeriesSpec> series = {};
   std::vector<PublishedSpec> published = {};
-  /// Further columns of the CSV; the first of them (`drawn` is their number) also get a curve. If x
-  /// and y have one value for each run, `also` is evaluated at the first checkpoint of the run.
+  /// Further columns of the CSV. The first `drawn` of them also get a curve. If x and y have one
+  /// value for each run, `also` is evaluated at the first checkpoint of the run.
   std::vector<ColumnSpec> also = {};
   std::size_t drawn = 0;
   std::optional<MarkSpec> mark = {};
@@ -89,7 +89,7 @@ struct PlotSpec {
   std::string x_symbol = {}, x_unit = {};  ///< of the x axis, if x is a parameter
   /// True if the plot is from a shipped manifest and a user's manifest lists the plot's figure.
   /// Labels in the user's manifest then replace the labels in `series`. The styles in `series` are
-  /// then used only if `series` contains every parameter in which the curves differ.
+  /// then used only if each parameter in which the curves differ is in a SeriesSpec::where.
   bool listed = false;
 };
 

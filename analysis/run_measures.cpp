@@ -123,9 +123,9 @@ std::vector<Provider> run_providers() {
        .measures = {{.name = "core_time_s",
                      .unit = "s",
                      .meaning = "processor time of all steps of the run, over all attempts and "
-                                "machines, without the time to make the packing. Each experiment "
-                                "that shares a run counts the full time. If no processor time was "
-                                "recorded, wall-clock time times the number of processes is used",
+                                "machines, without the time to make the packing. If several "
+                                "experiments use one run, each counts the full time. Without "
+                                "recorded processor time: wall-clock time x number of processes",
                      .kind = MeasureKind::run,
                      .words = "the core time",
                      .of_run = [](const FrameRun& run) { return measured(run.core_time_s); },

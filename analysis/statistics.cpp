@@ -314,8 +314,8 @@ std::optional<Estimate> log2_wait_ratio(std::span<const Waiting> a, std::span<co
   const std::vector<double> edges(factors.begin(), factors.end());
   const double limit = student_quantile(upper(level), static_cast<double>(a.size() + b.size() - 2));
   std::vector<Waiting> scaled(b.begin(), b.end());
-  double negative = edges.front();  // upper end of the factors with a negative statistic
-  double positive = edges.back();   // lower end of the factors with a positive statistic
+  double negative = edges.front();  // largest factor at which log_rank() < 0
+  double positive = edges.back();   // smallest factor at which log_rank() > 0
   Interval kept{infinite, -infinite};
   // Each interval: before the first edge, between two edges, and after the last edge.
   for (std::size_t k = 0; k <= edges.size(); ++k) {

@@ -92,9 +92,9 @@ std::optional<Estimate> difference_of_means(std::span<const double> a, std::span
 std::optional<Estimate> bootstrapped(std::size_t runs, const RunStatistic& statistic,
                                      double level = confidence_level);
 
-/// Interval that contains the statistic in 90 % of studies with `chosen` runs. Its ends are the 5 %
-/// and 95 % quantiles over random samples of `chosen` runs, drawn with replacement from `runs`
-/// runs. Unbounded if `runs` is less than least_bootstrap_runs.
+/// Interval that contains the statistic in 90 % of repeated studies. Its ends are the 5 % and 95 %
+/// quantiles over random samples of size `chosen`, drawn with replacement from all runs. `runs`:
+/// number of all runs. Unbounded if `runs` is less than least_bootstrap_runs.
 Interval repetitions(std::size_t runs, std::size_t chosen, const RunStatistic& statistic);
 
 /// Standard deviation of the true means of groups in a one-way random-effects model.

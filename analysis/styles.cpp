@@ -22,11 +22,11 @@ json values_of(const json& variant, std::span<const std::string> keys) {
   return values;
 }
 
-/// The distinct sets of values that `keys` have in `variants` are sorted. `rank`: index of the set
-/// of `variant`. `count`: number of these sets.
+/// Rank of `variant` if `variants` are sorted by the values of `keys`. Variants with equal values
+/// have equal ranks.
 struct Rank {
-  std::size_t rank = 0;
-  std::size_t count = 0;
+  std::size_t rank = 0;   ///< from 0
+  std::size_t count = 0;  ///< number of different ranks
 };
 Rank rank_of(const json& variant, std::span<const json> variants,
              std::span<const std::string> keys) {
@@ -86,7 +86,7 @@ Look Looks::of(RunGroup curve, const json& key) const {
   std::vector<std::string> in_panel = keys;
   std::erase_if(in_panel, [&](const auto& name) { return std::ranges::count(shared_, name) > 0; });
   StatedLook stated;
-  bool single = false;  // the StatedLook that gives stated.colour matches one curve per panel
+  bool single = false;  // stated.colour belongs to a single curve of the panel
   for (const StatedLook& one : stated_) {
     std::set<json> curves, colours;
     for (const json& other : variants_) {

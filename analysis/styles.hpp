@@ -77,7 +77,7 @@ class Looks {
                  std::vector<std::string> shared = {});
 
   /// Colour and symbol of a curve. If all runs of the curve belong to one variant, the swept values
-  /// of this variant decide. Otherwise `key` decides: the values that all runs of the curve share.
+  /// of this variant decide. Otherwise the values in `key` decide, which all these runs share.
   ///
   /// A StatedLook is used if the curve has the parameter values in StatedLook::where, and if all
   /// variants that match StatedLook::where agree in the parameter that decides the colour. The

@@ -78,16 +78,17 @@ struct Verdict {
   Table entered = {};    ///< rows with the numbers that the verdict uses
 };
 
-/// Returns `agrees` or `supported` if the interval lies inside the range that the claim expects,
-/// and `differs` or `refuted` if all of it lies outside. Otherwise returns `undecided`.
+/// Returns `agrees` (for Relation::same) or `supported` if the whole interval lies inside the range
+/// of the Relation, `differs` (for Relation::same) or `refuted` if the whole interval lies outside
+/// this range, and `undecided` otherwise.
 Ruling ruling_of(const Interval& interval, double margin, Relation claimed);
 
 /// The verdict that follows from the estimate's interval; undecided without an estimate. If the
 /// claim has a reason why it cannot be decided, the verdict is undecidable, with this reason.
 /// `runs_needed`: the value of Verdict::runs, larger than Estimate::runs, that would decide an
 /// undecided claim with 90 % probability. The true value is assumed to be 0 (Relation::same) or
-/// twice the margin (other relations). But if the interval excludes 0, or if the result would not
-/// be larger than Estimate::runs, the estimate is assumed to be the true value.
+/// twice the margin (other relations). But if the interval excludes 0, or if this assumption gives
+/// a number of at most Estimate::runs, the estimate is assumed to be the true value.
 Verdict decide(const Claim& claim, std::string quantity, const std::optional<Estimate>& estimate,
                std::size_t runs, std::string note, Table entered = {},
                Counted counted = Counted::runs);

@@ -336,10 +336,10 @@ class Tessellation {
   }
 
   /// Clips the face between a and b at the walls in `beyond`. Returns twice the vector area of the
-  /// remaining polygon. A side of this polygon that lies on a wall is also part of the borders of
-  /// two wall faces, one of a's cell and one of b's cell. The side contributes to the areas of both
-  /// wall faces: the area of a wall face is the integral of -z du along its border, where u and z
-  /// are perpendicular coordinates in the wall plane. Borders along an edge of the box contribute
+  /// remaining polygon. A side of this polygon that lies on a wall also borders two wall faces,
+  /// which belong to the cells of a and b. The side contributes to the areas of both wall faces:
+  /// the area of a wall face is the integral of -z du along its border, where u and z are
+  /// perpendicular coordinates in the wall plane. Borders along an edge of the box contribute
   /// nothing, because du is 0 there.
   Eigen::Vector3d clip(std::size_t start, std::int32_t a, std::int32_t b, unsigned beyond) {
     polygon_.clear();

@@ -20,8 +20,8 @@ constexpr double kGrainArea = std::numbers::pi / 4;
 constexpr double kRoughLayer = 0.175;
 constexpr std::uint32_t kFillStream = 4;  // streams 0 to 3 belong to the wall sides
 
-// Random stream of a wall side. Draw 0 (Geometry::wall_grain_draw) uses the streams 0 to 3, draw 1
-// the streams 5 to 8, draw 2 the streams 10 to 13, and so on. Streams 9, 14, ... are not used.
+// Random stream of a wall side. `draw` is Geometry::wall_grain_draw. Draw 0 uses the streams 0 to
+// 3, draw 1 uses 5 to 8, and so on. The streams 4 (kFillStream), 9, 14, ... are left out.
 std::uint32_t wall_stream(WallSide side, std::uint32_t draw) {
   return static_cast<std::uint32_t>(side) + (kFillStream + 1) * draw;
 }

@@ -24,7 +24,7 @@ struct Geometry {
   double nominal_packing_fraction = 0.64;  ///< determines the width of the cell
   double fill_packing_fraction = 0.28;     ///< packing fraction of the loose initial grains
   WallTexture walls = WallTexture::rough;
-  double wall_grain_area_fraction = 0.52;  ///< target area fraction of discs on a rough wall
+  double wall_grain_area_fraction = 0.52;  ///< target area fraction of wall grains on a rough wall
   double wall_grain_recess = 0.25;         ///< largest depth of centres behind a wall plane [d]
   std::uint32_t wall_grain_draw = 0;       ///< each value gives different wall grains
   MovingWall moving = MovingWall::bottom;

@@ -15,7 +15,7 @@ constexpr double kFirstStep = 0.1, kLargestStep = 0.5, kSmallestStep = 0.002;
 constexpr double kGrow = 1.1, kShrink = 0.5;
 constexpr double kMixing = 0.25, kMixingShrink = 0.99;
 constexpr int kDelay = 20;
-// Mass of the moving wall per d^2, in grain masses. For 1, the wall moves about as fast as a grain.
+// Moving wall's mass per d^2 [grain masses]. With this mass, the wall is about as fast as a grain.
 constexpr double kWallMass = 1;
 constexpr std::uint64_t kWatchInterval = 256;
 

@@ -170,9 +170,9 @@ bool NeighbourLists::prune(const Snapshot& now) {
 }
 
 // The outer lists must contain each pair whose distance is less than 1 plus the inner margins of
-// both partners. So an inner margin is at most the outer margin minus the movement and
-// margin_loss() since the outer lists were built. Returns false if this limit is below
-// settings_.inner_margin() for a grain or the walls.
+// both partners. So the largest allowed inner margin is: outer margin - margin_loss() - movement
+// since the outer lists were built. Returns false if this maximum is below settings_.inner_margin()
+// for a grain or the walls.
 bool NeighbourLists::set_inner_margins(const Snapshot& now) {
   const double least = settings_.inner_margin();
   const double horizon = kInnerHorizon * now.time_step;

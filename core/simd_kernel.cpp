@@ -84,8 +84,8 @@ HWY_INLINE void add_slots(Vectors& sum, const V* x, const V* y, const V* z) {
   }
 }
 
-// Adds (1/r - 1) dr of all neighbours that touch, in the order of the list. The k-th neighbour of
-// lane l is list[k * kLanes + l].
+// Adds (1/r - 1) dr of each touching neighbour to `sum`, in the order of the list. The k-th
+// neighbour of lane l is list[k * kLanes + l].
 template <bool kSeam>
 HWY_INLINE void add_contacts(Vectors& sum, const Vectors& own, const double* HWY_RESTRICT rows,
                              const std::int32_t* HWY_RESTRICT list, std::size_t slots, V depth,

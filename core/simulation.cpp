@@ -223,7 +223,7 @@ void Simulation::zero_slowest_velocities() {
 }
 
 void Simulation::check() const {
-  // The first step builds the neighbour lists. Without lists, the loaded state is still unchanged.
+  // Without neighbour lists, no step was made: the state is as loaded, and is not checked.
   if (counts_.builds > 0) watch(settings_.limits, 0);
 }
 

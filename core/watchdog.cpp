@@ -151,7 +151,7 @@ void check_place(const WatchTask& task, std::size_t g) {
     smallest = distance < smallest ? distance : smallest;
   }
   if (!(smallest >= -task.limits.escape && std::isfinite(own[2]))) {
-    throw NumericalFailure("the distance [d] of a grain's centre behind a wall", -smallest,
+    throw NumericalFailure("the depth [d] of a grain's centre behind a wall", -smallest,
                            task.limits.escape, task.id[g], task.step,
                            "A grain was pushed out of the cell. Lower the pressure or raise the "
                            "stiffness");

@@ -32,7 +32,7 @@ struct Ledger {
 /// each interval. Computing a sample takes about as long as computing 15 steps, because the wall
 /// contacts are found without neighbour lists. Throws NumericalFailure.
 ///
-/// Measured for one cycle at the time step of Table I (45600 steps), A = 0.1, N = 600 and 5200: the
+/// Measured for one cycle of 45600 steps (as in Table I), with A = 0.1 and N = 600 and 5200: the
 /// error is at most 0.6 % of the dissipation for strides 1 and 8, and 1 % for stride 16. With
 /// stride 8, a ledger takes 3 to 4 times as long as the cycle alone; with stride 16, 2 to 3 times.
 Ledger ledger(const Cell& cell, const Scene& scene, const Drive& drive, const State& start,

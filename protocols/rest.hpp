@@ -7,10 +7,10 @@
 namespace shearcell {
 
 /// Returns the state after `seconds` of rest under the forces of the scene, between upright walls
-/// that are held in place. States of continuous shear are recorded at the largest shear rate.
-/// States of paused shear are recorded after a pause (supplement B.5). After equal times of rest,
-/// states of both kinds can be compared. The result depends only on the arguments and has step 0.
-/// Throws NumericalFailure.
+/// that are held in place. States of continuous shear are recorded when the shear rate is
+/// largest in the cycle. States of paused shear are recorded after a pause (supplement B.5). After
+/// equal times of rest, states of both kinds can be compared. The result depends only on the
+/// arguments and has step 0. Throws NumericalFailure.
 State rested(const Cell& cell, const Scene& scene, State state, double seconds);
 
 }  // namespace shearcell

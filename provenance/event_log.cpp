@@ -171,7 +171,7 @@ sqlite::Database open_database(const std::filesystem::path& file, Access access)
     if (access != Access::create) {
       throw NotFound(file.string() +
                      ": the log is empty, because the creation of this store was interrupted; "
-                     "`shearcell run` with a manifest completes it");
+                     "`shearcell run` with a manifest completes the store");
     }
     database.create_tables(own_tables());
   }

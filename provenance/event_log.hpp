@@ -20,11 +20,11 @@ inline constexpr std::int64_t kSchemaVersion = 3;
 
 /// Opens the log, creates its tables when it is new or empty, and migrates an older schema without
 /// changing events. With Access::read, an older file is unchanged; tables of the new schema are
-/// built in memory. Even then the file is opened for writing if possible, so that SQLite can roll
-/// back the transaction of a killed program. Throws StoreDamaged when the file is not a store or
-/// has a newer schema, NotFound when a killed program left an empty log and `access` is not
-/// Access::create, and MachineError when the user has no permission to write and `access` requires
-/// it.
+/// built in memory. Any file, even with Access::read, is opened for writing if possible, so that
+/// SQLite can roll back the transaction of a killed program. Throws StoreDamaged when the file is
+/// not a store or has a newer schema, NotFound when a killed program left an empty log and `access`
+/// is not Access::create, and MachineError when the user has no permission to write and `access`
+/// requires it.
 sqlite::Database open_database(const std::filesystem::path& file, Access access);
 
 /// One row of the log.

@@ -38,7 +38,7 @@ Holder this_process();
 /// or a forged row and is ignored.
 inline constexpr std::uint64_t kLongestLeaseMs = 60'000;
 
-/// Whether another program may continue the run. A lease lapses when it expires, when
+/// Whether another program may continue the run. A lease lapses at expires_at_ms, when
 /// kLongestLeaseMs has passed since its renewal, or when the process of its holder is dead (this is
 /// checked only if Holder::place is the same for the holder and this process). A lease also lapses
 /// when the clock was set back to a time before the renewal.

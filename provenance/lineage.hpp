@@ -46,7 +46,7 @@ struct Attempt {
   nlohmann::json host = nlohmann::json::object();
   std::string from_run;         ///< run that recorded the initial state; "" if no run did
   std::string from_checkpoint;  ///< SHA-256 of the initial state, or ""
-  /// See core/bits_version.hpp. For old events, which do not record it, derived from Event::schema.
+  /// See core/bits_version.hpp. If an old event lacks this number, Event::schema determines it.
   std::uint64_t bits_version = 0;
   std::vector<std::string> checkpoints;  ///< SHA-256 of the recorded checkpoints, in order
 };

@@ -152,7 +152,7 @@ struct RunMerge {
   std::optional<Event> closing_event(const Database& into) const {
     if (!before || source_wins || attempts.empty() || !last_claim) return std::nullopt;
     const StageState now = query_stage(into, before->id).value().state;
-    // A completed run for which more cycles are requested becomes `declared` and stays `declared`.
+    // If a copied event requests more cycles of a completed run, this run is left `declared`.
     const bool more_to_do = before->state == StageState::completed && now == StageState::declared;
     if (now == before->state || more_to_do) return std::nullopt;
     return last_claim;

@@ -23,7 +23,7 @@ class ObjectStore {
 
   /// Writes the bytes to disk (with fsync) and returns their SHA-256. Keeps an existing object if
   /// it is valid, otherwise replaces it. Throws std::system_error if writing fails. Throws
-  /// StoreDamaged if a file or a link is in the place of `objects` or of the object's subfolder.
+  /// StoreDamaged if `objects` or the object's subfolder is not a folder but a file or a link.
   std::string put(std::span<const std::byte> bytes);
 
   /// Reads an object. Throws StoreDamaged, with the file's name, if its size or its hash differs.

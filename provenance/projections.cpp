@@ -128,8 +128,8 @@ class Projector {
         "'declared', state), target_cycles = max(target_cycles, excluded.target_cycles)",
         id_, event_.seq, d.parent, d.kind, d.resolved.dump(), d.grains, ask.target_cycles,
         event_.recorded_at);
-    // A repeated declaration sets `ordinal` only if it does not raise the target and does not
-    // change the checkpoint interval. The run is then the last one of its place (holds_place()).
+    // A repeated declaration keeps `ordinal` if it raises the target or changes the checkpoint
+    // interval. Otherwise it makes the run the last one declared for its place (holds_place()).
     run("INSERT INTO memberships VALUES(?,?,?,?,?,?,?,?,?,?,?,?) ON CONFLICT DO UPDATE SET "
         "ordinal = iif(excluded.target_cycles <= target_cycles AND excluded.checkpoint_every = "
         "checkpoint_every, excluded.ordinal, ordinal), "

@@ -38,7 +38,7 @@ struct Ask {
 struct Membership {
   Place place = {};
   Ask ask = {};
-  /// False if a manifest registered later declares stages of the same experiment and scale.
+  /// False if a newer manifest declares stages of the same experiment and scale.
   bool newest = true;
 
   static void fields(auto& m, auto field) {

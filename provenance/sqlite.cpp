@@ -123,7 +123,7 @@ void Database::require_journal_can_be_played_back(int code) const {
     if (faccessat(AT_FDCWD, path.c_str(), R_OK | W_OK, AT_EACCESS) == 0) continue;
     throw MachineError(fmt::format(
         "{}: a program was writing to this store when it was killed or the disk became read-only. "
-        "The next program that opens the store uses {} to undo the unfinished write, but this user "
+        "The next program that opens the store uses {} to undo the unfinished write, but you "
         "cannot write to {} ({}). Nothing that was recorded is lost. Copy the whole folder to a "
         "disk where you can write (`cp -r`, then `chmod -R u+w` on the copy) and use the copy, or "
         "open the store once as a user who can write to it",

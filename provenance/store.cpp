@@ -241,7 +241,7 @@ std::string Store::register_manifest(std::string_view text, std::string_view pat
   if (log_.version(stream) > 0 && (!known || newest.text(0) == stream)) return sha256;
   NewEvent event =
       encode(events::ManifestRegistered{{sha256, std::string(path), std::string(text)}, info});
-  // The manifest with the latest recorded_at is the newest one, so this event must not be earlier.
+  // The newest manifest must have the latest recorded_at, even if the clock was set back.
   if (known) event.not_before = newest.text(1);
   append(stream, event, lock);
   lock.commit();

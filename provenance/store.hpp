@@ -108,7 +108,7 @@ class Store {
 
   /// Records those memberships of the stage that meet one of these conditions: the store does not
   /// have the membership; the store has it with a smaller target or another checkpoint interval;
-  /// after this stage, another stage was declared for the membership's place. A larger target makes
+  /// the last stage declared for the membership's place is another stage. A larger target makes
   /// a completed stage `declared` again. Throws std::invalid_argument when the stage's id is not a
   /// SHA-256 or was recorded with other parameters, or when the parent was not declared.
   void declare_stage(const Stage& stage);
@@ -219,9 +219,9 @@ class Store {
   /// Merges other stores into this one (merge.cpp). If `runs` is not empty, only these runs are
   /// merged, and `runs` must contain their parents, too. All manifests and all files of grain
   /// positions are merged in any case. Throws NotFound when a source is not a store, and
-  /// MachineError while a process computes a run of this store. Throws StoreDamaged before anything
-  /// is written if a source is damaged, or if two stores hold different states for the same step of
-  /// a run or use one id for different runs.
+  /// MachineError while a process computes a run of this store. Throws StoreDamaged if a source is
+  /// damaged, or if two stores hold different states for the same step of a run or use one id for
+  /// different runs. All sources are checked before the first source is merged.
   std::vector<MergeReport> merge(const std::vector<std::filesystem::path>& sources,
                                  const std::set<std::string>& runs = {});
 

@@ -77,8 +77,8 @@ void check_extends(const EventLog& log, const Head& earlier, VerifyReport& repor
       found.empty()
           ? fmt::format("the log was cut off: it ends at event {}", report.head.seq)
           : fmt::format(
-                "the log was rewritten, or the given head is wrong: the event has hash {}, "
-                "but the given head has {}",
+                "the log was rewritten, or the given head is wrong: this event has hash {}, "
+                "but the given head has hash {}",
                 found, earlier.hash);
   add_error(report, event_name(earlier.seq),
             why + "; check the given head, or restore the log from a backup");

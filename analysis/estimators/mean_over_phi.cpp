@@ -31,8 +31,8 @@ std::vector<std::pair<double, double>> means_over_phi(const FrameRun& run,
   return means;
 }
 
-/// Joins the means_over_phi() of a run by straight lines. The number of the run is the mean of this
-/// curve over the range ClaimSpec::phi.
+/// The means_over_phi() of a run, joined by straight lines, form a curve. The value of the run is
+/// the mean of this curve over the range ClaimSpec::phi.
 Scalar over_phi(const ClaimSpec& claim) {
   const auto [low, high] = *claim.phi;
   const auto of = [low = low, high = high,

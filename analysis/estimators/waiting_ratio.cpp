@@ -43,7 +43,6 @@ std::vector<Waiting> waits_of(const ClaimSpec& claim, RunGroup runs) {
   return claim.reaches ? waits_for(runs, claim.compare, *claim.reaches) : waits_for_onset(runs);
 }
 
-/// The claim is decided by log2_wait_ratio().
 Verdict decide_waits(const ClaimSpec& claim, const Claim& stated, RunGroup first, RunGroup second) {
   const std::string event = event_of(claim);
   const std::vector<Waiting> a = waits_of(claim, first), b = waits_of(claim, second);

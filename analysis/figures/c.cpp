@@ -26,8 +26,8 @@ std::set<std::int64_t> cycles_to_follow() {
   for (const PublishedAmplitude& one : published_amplitudes) cycles.insert(one.n_bin);
   return cycles;
 }
-/// Cycles over which crystallites are followed to compare amplitudes. [choice]: the errors are
-/// larger after one cycle (crystallites hardly change) and after ten cycles (most have grown).
+/// Number of cycles over which crystallites are followed to compare amplitudes. [choice]: after one
+/// cycle crystallites have hardly changed, and after ten cycles most have grown.
 constexpr std::int64_t cycles_compared = 5;
 
 /// Each critical size of the supplement comes from "usually 6 to 10" simulations.
@@ -209,8 +209,7 @@ Table followed_table(std::span<const AmplitudeGrowth> all) {
 }
 
 /// Fig. 4(b) of the main text. In method 1 of section C the onset is the phi at which a curve
-/// reaches the critical size. A packing without crystallites is drawn with size 1; method 2 also
-/// uses size 1.
+/// reaches the critical size. A packing without crystallites is drawn with size 1, as in method 2.
 Table largest_table(const Frame& frame, std::span<const AmplitudeGrowth> all) {
   PlotSpec plot{.name = "C_largest",
                 .y = "max(1,largest_crystallite)",

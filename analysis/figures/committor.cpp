@@ -71,8 +71,8 @@ std::vector<const CrystalliteMap*> maps_of(const FrameRun& run) {
   return maps;
 }
 
-/// Adds the subjects of the state that the clones begin with: the followed crystallites or, if the
-/// state is a control, the state itself.
+/// Adds one Subject for each followed crystallite of the state that the clones begin with, or one
+/// Subject for the state if it is a control.
 void add_state(RunGroup clones, Amplitude& to) {
   std::vector<std::vector<const CrystalliteMap*>> maps;  // of each clone
   for (const FrameRun* clone : clones) maps.push_back(maps_of(*clone));
@@ -141,8 +141,8 @@ std::optional<double> background(const Amplitude& one) {
 }
 
 /// For each packing and size, the number of clones whose crystallite grew and the number whose
-/// crystallite was gone. Merged and undecided clones are left out. With `undecided` = Fate::grown
-/// or Fate::gone, undecided clones are counted as grown or as gone.
+/// crystallite was gone. Merged clones are left out. Undecided clones are counted as grown if
+/// `undecided` is Fate::grown, counted as gone if it is Fate::gone, and otherwise left out.
 std::vector<GrowthBySize> by_packing_and_size(const Amplitude& one, std::size_t rule,
                                               Fate undecided = Fate::undecided) {
   std::map<std::string_view, GrowthBySize> packings;

@@ -49,7 +49,7 @@ void add_speed(CLI::App& bench, Context& context) {
       speed);
   add_number(*command, "--size", options->sizes, "Numbers of grains", "N", 1, 100'000'000)
       ->capture_default_str();
-  add_number(*command, "--threads", options->threads, "Numbers of threads in one run", "T", 1, 1024)
+  add_number(*command, "--threads", options->threads, "Numbers of threads", "T", 1, 1024)
       ->capture_default_str();
   add_number(*command, "--repeats", options->repeats, "Number of timings; the median is printed",
              "N", 1, 1000)

@@ -105,10 +105,10 @@ void add_common_options(CLI::App& command, Context& context, const std::string& 
 void add_expand_options(CLI::App& command, ExpandOptions& options);
 
 /// Reads and expands each manifest once. If the runs of manifest B start from runs of manifest A, A
-/// comes before B in the result. Passes all warnings to warn(). Also warns if figures
-/// will omit runs of the store or of an earlier plan, because a plan has another version of their
-/// manifest. If `brief` is true and a manifest has more than three warnings, prints the first
-/// warning and counts the others.
+/// comes before B in the result. Passes all warnings to warn(). Also warns if a plan lacks runs
+/// that the store or an earlier plan has from another version of the same manifest: figures
+/// will omit these runs. If `brief` is true and a manifest has more than three warnings, prints the
+/// first warning and counts the others.
 std::vector<Plan> load_plans(const std::vector<std::string>& paths, const ExpandOptions& options,
                              Context& context, bool brief = true);
 
@@ -122,7 +122,7 @@ struct PlacedRun {
   std::vector<Membership> places;
 };
 
-/// Returns each stage of the runs once, with all its places, in the order of first occurrence.
+/// Groups the runs by stage, in the order of first occurrence.
 std::vector<PlacedRun> by_run(const std::vector<Run>& selected);
 
 /// Returns an error message if the text is not a decimal number from `low` to `high`, else "". A

@@ -112,7 +112,7 @@ std::vector<CheckpointRecord> chosen(const Store& store, const PlacedRun& run,
   const CycleRange range = parse_cycles(cycles);
   const std::optional<Drive> motion = shear_drive(stage);
   const double near = motion ? 0.5 / static_cast<double>(cycle_steps(*motion)) : 0;
-  // For a single cycle, also considers checkpoints that exist only because of an interruption.
+  // If one cycle is requested, also considers checkpoints that only an interruption caused.
   const std::vector<CheckpointRecord> all =
       range.first == range.last ? store.checkpoints(stage.id, Listed::and_pruned)
                                 : checkpoints_for(store, stage, asks_of(run.places));

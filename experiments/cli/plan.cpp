@@ -211,8 +211,8 @@ void print_until(const std::vector<Line>& lines, const nlohmann::json& left, dou
   fmt::print("      `until` ({}): ", fmt::join(ends, "; "));
   if (left.is_null()) {
     fmt::print(
-        "fewer particle-steps than the number above; no estimate yet, because a condition has not "
-        "ended any run so far\n");
+        "fewer particle-steps than the number above if `until` ends these runs early; no estimate "
+        "yet, because at least one condition has never ended a run\n");
   } else {
     fmt::print(
         "about {:.3g} particle-steps ({:.0f} % of the number above) if `until` ends these runs at "

@@ -227,7 +227,7 @@ void say(std::string_view heading, fmt::format_string<Arguments...> format,
   print_text("{}\n", without_controls(fmt::format("{:<12} {}", heading, text)));
 }
 
-// Gives each build and each host a number, so that the lines of attempts are short.
+// Numbers the builds and hosts. An attempt is printed with these numbers instead of long texts.
 class Makers {
   using Lines = std::vector<std::string>;
 
@@ -257,7 +257,7 @@ class Makers {
     if (found == known.end()) known.push_back(lines);
     return fmt::format("{} {}", what, place + 1);
   }
-  std::map<std::string, std::vector<Lines>> known_;  // the different builds ("build") and hosts
+  std::map<std::string, std::vector<Lines>> known_;  // keys: "build" and "host"
 };
 
 void print_manifests(const FigureLineage& lineage) {
@@ -487,7 +487,7 @@ void add_show(CLI::App& app, Context& context) {
       add_command(app, context, "show", "Show one run, checkpoint, figure or figure file", show);
   command
       ->add_option("name", options->name,
-                   "Run id, checkpoint SHA-256 (or a unique beginning), figure, or figure file")
+                   "Run id or checkpoint SHA-256 (or a unique beginning), figure, or figure file")
       ->required();
   command->add_flag("--checkpoints", options->list, "List every checkpoint that a figure uses");
   add_common_options(

@@ -208,8 +208,8 @@ std::string check_sbatch(const std::string& text) {
     if (!taken.starts_with(option)) continue;  // sbatch accepts abbreviated options
     return fmt::format(
         "'{}': remove {}. With this option, `submit` cannot queue its jobs or cannot follow their "
-        "progress. (--array-size limits the number of tasks. To use another cluster, run `submit` "
-        "there.)",
+        "progress. To limit the number of tasks, use --array-size. To use another cluster, run "
+        "`submit` there.",
         printable(text), taken);
   }
   return unfit_value(text);

@@ -93,9 +93,9 @@ void add_table(CLI::App& app, Context& context) {
           columns_text +
           "Columns whose values need a simulation are written only with an option, such as "
           "--rest.\ncritical_size and all columns listed after it are written only with --per run. "
-          "With --per run, all\nother measures are measures of the run's newest checkpoint. A "
-          "run that several experiments share\nhas rows for each of these experiments, up to the "
-          "last cycle that this experiment asks for.\n\nCurves:\n" +
+          "With --per run, all\nother measures are measures of the run's newest checkpoint. If "
+          "several experiments share a run,\neach experiment has its own rows for the run, up to "
+          "the last cycle that the experiment asks for.\n\nCurves:\n" +
           curves_text +
           "Examples:\n"
           "  shearcell table --experiment drag --out drag.csv\n"

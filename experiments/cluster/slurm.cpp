@@ -40,8 +40,8 @@ const std::vector<std::string> kRemoved = {
 // Slurm's programs wait up to 10 s for Slurm's controller, so shearcell waits longer for them.
 constexpr double kAnswerSeconds = 15;
 
-// Longest text given to Slurm. std::regex recurses for each character, so a long text would
-// overflow the stack.
+// Longest text given to Slurm. Some texts are checked with std::regex, which recurses for each
+// character, so a very long text would overflow the stack.
 constexpr std::size_t kLongest = 1000;  // [bytes]
 
 const std::string kVariable = R"(\$(?:([A-Za-z_]\w*)|\{([A-Za-z_]\w*)\}))";

@@ -34,7 +34,8 @@ constexpr std::size_t kIdDigits = 12;
 // preempt a job, Slurm sends TERM to all processes. The script passes both signals on to the
 // program, which then records its states and ends with code 85. After USR1, the script also queues
 // the task again. It identifies the task as ARRAY_TASK ("17_3"), because the job number of a task
-// may also be the number of the whole array. The script restarts a killed program (out of memory).
+// may also be the number of the whole array. If the program is killed, for example for lack of
+// memory, the script starts it again.
 constexpr const char* kTaskScript = R"sh(#!/bin/bash
 again= stopped= signalled= program= leave=${SLURM_RESTART_COUNT:+--leave-failed}
 pass_on() {
@@ -72,8 +73,8 @@ done
 exit "$code"
 )sh";
 
-/// Adds the command to the job. The user's options come directly after --export and before all
-/// other options, so they can replace only --export: sbatch uses the last of repeated options.
+/// Adds the command to the job. sbatch uses the last of repeated options. The user's options come
+/// after --export and before all other options, so the user can replace only --export.
 /// Environment variables cannot replace an option: for sbatch, options take precedence.
 Job complete(Job job, const JobOptions& options, const fs::path& folder, const std::string& log,
              const std::vector<std::string>& own, const std::vector<std::string>& arguments) {

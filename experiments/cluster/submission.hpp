@@ -34,10 +34,9 @@ struct Share {
 /// several plans contain is listed once. `store` may be null.
 std::vector<Share> shares_of(const std::vector<Plan>& plans, const Store* store);
 
-/// Distributes `packings`, which are shares from shares_of(), over at most `tasks` new shares.
-/// Takes the elements of `packings` in order of descending core time, and adds each of them to the
-/// new share that has the least core time so far. No new share is empty. The same input gives the
-/// same new shares.
+/// Merges the shares `packings` (from shares_of(), one for each packing) into at most `tasks` new
+/// shares. Adds `packings` in order of descending core time, each to the new share with the least
+/// core time so far. No new share is empty. The same input gives the same new shares.
 std::vector<Share> share_out(std::vector<Share> packings, std::size_t tasks);
 
 /// Options for Slurm. Empty texts leave the choice to the cluster.

@@ -89,8 +89,8 @@ class Trajectory {
         H5Fclose};
   }
 
-  /// Writes the frame's value of an H5MD element {step, time, value}. All elements share the
-  /// datasets `step` and `time`.
+  /// Writes the value of an H5MD element {step, time, value} for the current frame. All elements
+  /// share the datasets `step` and `time`.
   void element(const std::string& path, hid_t type, const Shape& shape, const void* data,
                const std::string& unit = "") {
     if (next_ == 0) {

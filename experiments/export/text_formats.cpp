@@ -22,7 +22,7 @@ namespace {
 bool looks_like_a_value(std::string_view text) {
   std::string word = lower(text.substr(0, text.find_first_of(" ,")));
   const auto of_a_name = [](char c) { return c >= 'a' && c <= 'z' && c != 'd' && c != 'e'; };
-  const bool number = std::ranges::none_of(word, of_a_name);  // "1e3", or Fortran's "1d3"
+  const bool number = std::ranges::none_of(word, of_a_name);  // also "1e3" and Fortran's "1d3"
   word.erase(0, word.find_first_not_of("+-"));
   constexpr std::string_view kValues[] = {"t",   "f",   "true",     "false",
                                           "nan", "inf", "infinity", "_json"};

@@ -45,8 +45,8 @@ struct WantedFigures {
 };
 
 /// Returns the figures, plots and claims with these names from the newest manifests of these
-/// experiments. An empty list excludes nothing. If both lists are given, figures of
-/// all_figures() in `names` are returned even for experiments whose manifests do not list them.
+/// experiments. An empty list excludes nothing. If both lists are given, a named figure of
+/// all_figures() is returned for each experiment, even if its manifest does not list the figure.
 /// Throws NotFound for an unknown figure or experiment; the message proposes the nearest name.
 WantedFigures wanted_figures(const Store& store, const std::vector<std::string>& names = {},
                              const std::vector<std::string>& experiments = {});
@@ -77,8 +77,8 @@ struct CollectedRuns : Frame {
   std::vector<std::string> notes;
 };
 
-/// Selects the runs of the figure's experiments that match `selection` and have the scale of the
-/// last declared run among them. Returns the newest_runs() of these, with the checkpoints that the
+/// Selects runs of the figure's experiments by `selection`, and keeps those with the scale of the
+/// last declared run. Returns the newest_runs() of the kept runs, with the checkpoints that the
 /// figure needs, up to FrameRun::end. In a figure of all experiments, a run that belongs to several
 /// experiments occurs once for each experiment. Throws NotFound if no run is selected.
 CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,

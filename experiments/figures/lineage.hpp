@@ -52,7 +52,7 @@ struct FigureInput {
 struct FigureLineage {
   FigureRecord record;
   std::string scale;
-  std::string plots;  ///< "drawn by the plots of ...", or "" if the manifest defines the plots
+  std::string plots;  ///< note that the program, not the manifest, defines the plots; or ""
   std::vector<FigureInput> inputs;
   std::map<std::string, std::string> outputs;  ///< file name -> SHA-256
   std::vector<ManifestText> manifests;         ///< manifests of the inputs, each once
@@ -80,8 +80,8 @@ std::string lineage_text(nlohmann::json provenance);
 std::vector<FigureRecord> figure_records(const Store& store);
 
 /// Collects the lineage from the log. Throws StoreDamaged if the record is malformed or names an
-/// unknown run. Also reads records of earlier versions, which list the SHA-256 of every checkpoint
-/// file instead of states.
+/// unknown run. Also reads older records, which list the SHA-256 of every checkpoint file instead
+/// of a hash of the states.
 FigureLineage figure_lineage(const Store& store, const FigureRecord& record);
 
 nlohmann::json to_json(const FigureLineage& lineage);

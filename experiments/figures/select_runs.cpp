@@ -92,8 +92,8 @@ void note_shortened(const std::vector<Run>& runs, std::vector<std::string>& note
   }
 }
 
-/// Replaces each experiment whose manifest has the key `of` by the experiments listed in this key.
-/// Listed experiments without runs of their own are left out.
+/// If the manifest of an experiment has the key `of`, replaces the experiment by the experiments
+/// that `of` lists. Listed experiments without runs of their own are left out.
 std::vector<std::string> with_members(const Store& store,
                                       const std::vector<std::string>& experiments) {
   std::vector<std::string> all;

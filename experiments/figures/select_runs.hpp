@@ -37,8 +37,8 @@ struct NewestRuns {
 
 /// Returns the runs that figures and tables show. These are, for each experiment and scale, the
 /// runs of the last registered manifest version that has runs at this scale. Within a variant, each
-/// seed is listed once, because counting a run twice would make errors too small. But a stage that
-/// several variants share occurs in a run of each of these variants. Settled packings are left out.
+/// seed is listed once, because counting a run twice would make errors too small. But if variants
+/// share a stage, each variant has its own run. Settled packings are left out.
 NewestRuns newest_runs(std::vector<Run> selected);
 
 /// The experiment, scale, variant and seed for which the stage was declared first. Empty if no

@@ -68,9 +68,8 @@ bool may_differ_in_settling(std::string_view key);
 bool takes_auto(std::string_view key);
 
 /// Sets the parameter `key` so that the time step is about 0.3547 times the stability limit, as in
-/// Table I. For settle_time_step_s, 2 s is a whole number of time steps. With the parameters of
-/// Table I, the result is the time step of Table I. The result may be out of range; check it with
-/// check_value().
+/// Table I. settle_time_step_s becomes 2 s divided by a whole number. The parameters of Table I
+/// give the time step of Table I. The result may be out of range; check it with check_value().
 void resolve_auto(std::string_view key, Parameters& parameters);
 
 /// Mean overlap of touching grains at rest [d], to leading order: 0.75 p d/k, where p is the

@@ -401,7 +401,7 @@ bool has_checkpoint(const FrameRun& run, const std::array<std::uint64_t, 2>& cyc
 /// value.
 string lack_of(const string& column, const std::array<std::uint64_t, 2>& cycles, RunGroup runs,
                const json& wanted = nullptr) {
-  std::uint64_t back = 0;  // a value also needs the checkpoint this many cycles earlier; 0: none
+  std::uint64_t back = 0;  // cycles between the two checkpoints that a value needs; 0: it needs one
   for (const string& name : providers_of({&column, 1})) {
     back = std::max(back, provider(name).cycles_back);
   }

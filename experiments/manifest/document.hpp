@@ -18,7 +18,7 @@ struct Node {
   Position at = {};
   std::string text = {};         ///< the value of a scalar
   bool quoted = false;           ///< written in quotes or as a block
-  std::vector<Node> parts = {};  ///< items of a list, or values of a map with unique keys
+  std::vector<Node> parts = {};  ///< items of a list, or values of a map
   std::string key = {};          ///< key of this node in its map; "" if in no map
   Position key_at = {};          ///< position of `key`; in a list, position of the list's key
   std::string path = {};         ///< keys from the root, as in "scales.smoke.grains"

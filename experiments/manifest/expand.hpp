@@ -20,7 +20,7 @@ namespace shearcell {
 struct ExpandOptions {
   std::optional<std::string> scale = {};     ///< default: `desk`, or `base` if there are no scales
   std::optional<std::uint64_t> cycles = {};  ///< replaces the number in the manifest
-  /// Replaces the number of seeds. If the manifest lists seeds, the first ones are used.
+  /// Replaces the number of seeds. A list of seeds in the manifest is cut to this length.
   std::optional<std::uint64_t> seeds = {};
   /// Only variants with these values, for example "fluid=cell". Empty: all variants.
   std::vector<std::string> variants = {};
@@ -28,9 +28,9 @@ struct ExpandOptions {
   /// Replaces the manifest's `engine`. If this changes the engine, `engine` becomes a swept key.
   std::optional<std::string> engine = {};
   /// Stages in the store, and stages of manifests that stand before this manifest in the same
-  /// command. Each stage records the number of cycles that earlier commands requested. Warnings
-  /// assume the largest number of cycles that any command, including this one, requested with this
-  /// version of the manifest.
+  /// command. Each stage records the numbers of cycles requested for it. Warnings about a variant
+  /// assume the largest number requested with this version of the manifest, including the number
+  /// requested now.
   std::span<const Stage> known = {};
 };
 

@@ -153,8 +153,8 @@ struct Placed : Spec {
   Position at;
 };
 
-/// `start`: a shear begins with a state of a recorded run, or a packing begins with the grains of a
-/// file. Default: loose grains settle.
+/// `start`: initial state, from a file of grains or from a recorded run. Default: loose grains that
+/// settle.
 struct Start {
   std::string file = {};  ///< relative to the folder of the manifest
   std::optional<LengthUnit> unit = {};

@@ -145,7 +145,8 @@ std::optional<LengthUnit> unit_of(string_view name) {
 /// A file must give the same packing in all versions of this program, because the packing's id does
 /// not change. Earlier versions ignored a velocity whose name is not in kMeanings. If this version
 /// read the velocity, the packing would differ. Earlier versions also ignored columns such as x_mm
-/// or "x [m]". Such columns are read only if the file has none of the columns x, x_m and x_d.
+/// or "x [m]". This version reads them only in files that earlier versions refused: files that have
+/// none of the columns x, x_m and x_d.
 Meaning meaning_of(const Column& column, bool units) {
   static const std::regex with_unit(
       "(.+?)([ _]|[ _]*[\\[(])(d|[mcu]?m|\u00b5m|\u03bcm)(_per_s|/s)?[\\])]?");
@@ -562,7 +563,7 @@ class PackingReader {
     }
     grains_.columns = columns_of(columns);
     grains_.more = "image flags";
-    if (ours) grains_.columns[1].name = "wall_side";  // type 1: grain; larger: wall grain
+    if (ours) grains_.columns[1].name = "wall_side";  // type 1: grain; type > 1: wall grain
     grains_.first_wall = 2;
   }
 

@@ -162,8 +162,8 @@ void fields(Scale& scale, const auto& visit) {
          .example = "{every_cycles: 1, phases: [0.25, 0.5, 0.75]}"});
   visit(scale.until,
         {.name = "until",
-         .doc = "ends a run `extra_cycles` cycles after the end of the first cycle at which the "
-                "measure reaches the value. Default: the run ends at `cycles`",
+         .doc = "ends a run `extra_cycles` cycles after the measure first reaches the value; only "
+                "checkpoints at whole cycles count. Default: the run ends at `cycles`",
          .besides = ", or `none`",
          .example = "{crystalline_percent: 10, extra_cycles: 15}"});
   visit(scale.looks, {.name = "looks",
@@ -418,9 +418,8 @@ void fields(Manifest& manifest, const auto& visit) {
                             .folds = true});
   visit(manifest.of,
         {.name = "of",
-         .doc = "experiments in the store. The plots and claims use the runs of these "
-                "experiments, and this manifest defines no runs. A selection of runs may contain "
-                "the key `experiment`",
+         .doc = "experiments in the store whose runs the plots and claims use. A manifest with "
+                "this key defines no runs. A selection of runs may contain the key `experiment`",
          .example = "[drag, timestep]"});
   visit(manifest.figures,
         {.name = "figures", .doc = "figures of the supplement to draw", .example = "[S2]"});
@@ -820,7 +819,7 @@ struct Reader {
   void read(const Node& in, const Field& about, std::vector<T>& values) {
     values.clear();  // a scale starts with a copy of the top level's list
     Field item = with_type<T>(about);
-    // The item's example is the list's example without the brackets. A number has no example.
+    // An item's example: the list's example without its brackets; "" if the items are numbers.
     item.example = item.example.substr(1, std::is_arithmetic_v<T> ? 0 : item.example.size() - 2);
     for (const Node& each : items_of(in, about.example)) read(each, item, values.emplace_back());
   }
@@ -1056,10 +1055,10 @@ struct Reader {
     for (const SweepAxis& axis : sweep.zip) {
       const auto& [first, at, values] = sweep.zip.front();
       if (axis.values.size() == values.size()) continue;
-      problems.add(axis.at, fmt::format("{}.zip.{}", in.path, axis.key),
-                   fmt::format("differs in length from {}, of length {}", first, values.size()),
-                   counted(axis.values.size(), "value"),
-                   "Give all lists of a zip the same length.");
+      problems.add(
+          axis.at, fmt::format("{}.zip.{}", in.path, axis.key),
+          fmt::format("differs in length from {}, which has length {}", first, values.size()),
+          counted(axis.values.size(), "value"), "Give all lists of a zip the same length.");
     }
   }
 
@@ -1267,9 +1266,9 @@ struct Reader {
   }
 
   // Reports each plot, claim, figure and panel whose name occurs twice or is already the name of a
-  // figure or panel of the supplement. Exception: plots and claims of a figure of the supplement
-  // may use the names of this figure and its panels if no C++ code computes the figure and
-  // `figures` does not list it. `listed`: the names in `figures`.
+  // figure or panel of the supplement. Exception: plots and claims that define figure F of the
+  // supplement may be named like F and its panels, unless C++ code computes F or `listed` has F.
+  // `listed`: the names in `figures`.
   void check_own_names(std::span<const Figure> supplement, const std::vector<string>& listed) {
     std::vector<std::pair<const Node*, string>> names, figures;  // {node, its figure}
     Names panels;

@@ -114,9 +114,9 @@ std::span<const Field> schema() {
                            "confining pressure (Table I); pressure_at says where it acts"),
       row<&P::pressure_at>(
           "pressure_at", "", "", {}, {.stage = StageKind::prepare, .omitted_at = "moving_wall"},
-          "wall on which the pressure is P. With `moving_wall`, the load of the moving wall is P "
-          "A_w. With `top`, the load of a moving bottom wall is P A_w plus the grains' weight. "
-          "The two values are equivalent without gravity or with a moving top wall"),
+          "wall on which the pressure is P. With `moving_wall`, the load on the moving wall is P "
+          "A_w. With `top`, the load on a moving bottom wall is P A_w plus the grains' weight. "
+          "`moving_wall` and `top` are equivalent without gravity or with a moving top wall"),
       // The cell.
       row<&P::walls>("walls", "", "", {}, kPrepare,
                      "texture of the walls; rough walls carry fixed wall grains"),
@@ -152,8 +152,8 @@ std::span<const Field> schema() {
                                   "`auto`: 0.355 times the stability limit, as in Table I"),
       row<&P::settle_force_tolerance>(
           "settle_force_tolerance", "", "1", above(0, 1), kPrepare,
-          "limit of two forces on the moving wall, each divided by P A_w: the force imbalance, and "
-          "the drag force. Settling ends when both forces are below this limit, and the kinetic "
+          "upper limit of the force imbalance and of the drag force of the moving wall, each "
+          "divided by P A_w. Settling ends when both forces are below this limit, and the kinetic "
           "energy is below settle_kinetic_tolerance"),
       row<&P::settle_kinetic_tolerance>("settle_kinetic_tolerance", "", "1", above(0, 1), kPrepare,
                                         "limit of the kinetic energy per grain, divided by P "

@@ -78,10 +78,10 @@ std::string remedy_for_width(const Parameters& p, double width) {
 /// Places the grains between the wall planes of the cell. Throws ManifestError if the box or the
 /// grains do not fit the width and depth of the cell.
 ///
-/// Without a box, grains may overlap a side wall as deeply as two grains in the file overlap: a
-/// packing that is under load or has not relaxed also overlaps its walls. Overlaps with a wall of
-/// up to `usual_overlap` are always allowed, because the deepest contact under load can be at a
-/// wall. Deeper overlaps mean that the cell is narrower than the packing.
+/// Without a box, grains may overlap a side wall by the larger of `usual_overlap` and the deepest
+/// overlap of two grains in the file. A packing that is under load or has not relaxed also overlaps
+/// its walls, and its deepest contact can be at a wall. Deeper overlaps mean that the cell is
+/// narrower than the packing.
 State state_in(const Cell& cell, const PackingFile& grains, const std::string& path,
                const Parameters& p) {
   constexpr double tolerance = 1e-6;  // relative to the width
@@ -200,8 +200,8 @@ PackingText read_packing_file(const Manifest& manifest, const Scale& scale) {
 
 PlacedGrains placed(const PackingText& packing, const Parameters& p, std::uint64_t seed,
                     const Poll& poll) {
-  // The packing must pass the first overlap check. Without settling, this check allows
-  // max_overlap_diameters. Settling allows larger overlaps while it presses the grains together.
+  // The packing must pass the run's first overlap check. The limit of this check is
+  // kLargestOverlapLimit if the grains settle first, and max_overlap_diameters otherwise.
   double limit = p.max_overlap_diameters;
   if (packing.file.settles) limit = std::max(limit, 0.9 * kLargestOverlapLimit);
   const PackingFile grains = read_packing(packing.text, packing.path,

@@ -30,9 +30,8 @@ struct Variant {
   std::uint64_t seeds = std::numeric_limits<std::uint64_t>::max();
 };
 
-/// Removes the spaces around the key and the value of "key=value". If the key is a symbol, as in
-/// variant_names(), writes the name of the parameter and no unit: "P=954 Pa" gives
-/// "pressure_Pa=954".
+/// Removes the spaces around the key and the value of "key=value". Replaces a symbol by the name of
+/// the parameter and drops the unit after the value: "P=954 Pa" gives "pressure_Pa=954".
 std::string same_spelling(std::string_view part);
 
 /// Selects variants, experiments or seeds by texts from the command line. A variant such as
@@ -44,15 +43,15 @@ class Filter {
   explicit Filter(const std::vector<std::string>& wanted);
   explicit Filter(const std::vector<std::uint64_t>& wanted);
 
-  /// Whether the texts select `value`. A part of a text may also be a part of `name`, the display
-  /// name of `value`. If several texts have the same keys, `value` must fit at least one of these
-  /// texts: "a=1", "a=2" and "b=3" select values with b=3 that also have a=1 or a=2. Without texts,
-  /// every value is selected.
+  /// Whether the texts select `value`. The parts of `name`, the display name of `value`, count as
+  /// further parts of `value`. If several texts have the same keys, `value` must fit at least one
+  /// of these texts: "a=1", "a=2" and "b=3" select values with b=3 that also have a=1 or a=2.
+  /// Without texts, every value is selected.
   bool passes(const std::string& value, const std::string& name = "");
   /// The first of the given texts that selects none of the values in seen(), or null.
   const std::string* unfound() const;
-  /// The values that passes() was called with, each once, in the order of the calls. If the
-  /// display name of a value has parts that the value lacks, the name follows the value.
+  /// The values that passes() was called with, each once, in the order of the calls. A
+  /// display name is an entry after its value, unless the value has all parts of the name.
   const std::vector<std::string>& seen() const { return seen_; }
 
  private:

@@ -87,9 +87,9 @@ std::set<std::uint64_t> starting_steps(const Store& store, const Stage& stage) {
   return steps;
 }
 
-/// Throws StoreDamaged if the stage started from a wrong checkpoint of its parent. If other stores
-/// were merged into this store, accepts a starting checkpoint that is not in the log: merge() does
-/// not copy a checkpoint if this store already has the same state in a file with different bytes.
+/// Throws StoreDamaged if the stage started from a wrong checkpoint of its parent. After a merge,
+/// accepts a starting checkpoint that is not in the log, because merge() does not copy a checkpoint
+/// if this store already has a file with the same state but different bytes.
 void check_beginning(const Store& store, const Stage& stage) {
   if (stage.parent.empty()) return;
   const std::set<std::uint64_t> steps = starting_steps(store, stage);

@@ -147,8 +147,8 @@ class Measuring {
       }
       const CheckpointRecord* other = sources_.earlier(record, *providers_[p], task.every);
       if (other != nullptr) outcome_.earlier.insert(other->sha256);
-      // If the log has digests for this checkpoint, but none for this result, only the checkpoint's
-      // file can confirm the result. So the result is not used if the checkpoint is pruned.
+      // If the log has digests of other results of this checkpoint, but none of this result, only
+      // the checkpoint's file can confirm the result. So the result is not used after pruning.
       if (!found[p] ||
           !sources_.is_as_pruned(record, {task.keys[p], *found[p]}).value_or(!is_pruned)) {
         continue;

@@ -89,7 +89,7 @@ class MeasureSources {
   void read_run(const std::string& run);
 
   /// The earlier checkpoint of the same run that the provider needs. Null if it was never recorded,
-  /// or if it is at a whole cycle that `every` does not divide. Valid while this object exists.
+  /// or if its cycle is whole but not a multiple of `every`. Valid while this object exists.
   const CheckpointRecord* earlier(const CheckpointRecord& record, const Provider& provider,
                                   std::uint64_t every) const;
 

@@ -81,7 +81,7 @@ End end_by(const Stage& stage, const Ask& ask, std::span<const CheckpointRecord>
     const auto known = measures.find(one.sha256);
     if (known == measures.end() || !known->second.numbers.contains(until->measure)) {
       // A recorded end is valid only for requests of at most stage.target_cycles cycles. For a
-      // request of more cycles, the checkpoint `one` must be measured.
+      // request of more cycles, `until` must be tested at this checkpoint.
       if (ask.target_cycles <= stage.target_cycles) {
         end.reached = recorded_reach(stage, *until, every);
       }

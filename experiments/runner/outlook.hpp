@@ -37,7 +37,7 @@ struct Outlook {
   /// The cycle at which the stage ends: the largest number of cycles that experiments ask for, or
   /// an earlier cycle at which `until` is known to end the stage.
   double end = 0;
-  /// Whether the stage may end before `end`: an `until` was not reached yet, but may be reached.
+  /// Whether an `until` that is not fulfilled yet may end the stage before `end`.
   bool may_end_early = false;
   /// Null, or how an `until` ended the stage at its last checkpoint, in the form of the event
   /// RunCompleted: {"by": "until", "measure", "value", "extra_cycles", "reached_at_cycle",
@@ -56,11 +56,11 @@ struct Outlook {
 
 /// Finds what remains to be computed of a recorded or a new stage. `asks`: the requests of
 /// experiments, which may differ from the recorded requests in `stage`. `checkpoints`: all
-/// checkpoints of the stage except rejected ones, by step (Listed::and_pruned). Let A be a request
-/// with an `until`. A completed stage needs no more cycles for A if a recorded request has the same
-/// `until` as A, at least as many cycles, and a `checkpoint_every` that is a multiple of A's
-/// `checkpoint_every`. This recorded request tests `until` only at cycles at which A tests `until`,
-/// so it cannot end the stage earlier than A would. Throws StoreDamaged if a request is invalid.
+/// checkpoints of the stage except rejected ones, by step (Listed::and_pruned). Let R be a request
+/// with an `until`. A completed stage needs no more cycles for R if a recorded request has the same
+/// `until` as R, at least as many cycles, and a `checkpoint_every` that is a multiple of R's
+/// `checkpoint_every`. This recorded request tests `until` only at cycles at which R tests `until`,
+/// so it cannot end the stage earlier than R would. Throws StoreDamaged if a request is invalid.
 Outlook outlook(const Stage& stage, std::span<const Ask> asks,
                 std::span<const CheckpointRecord> checkpoints, const KnownMeasures& measures = {});
 
@@ -124,15 +124,15 @@ Outlook measured_outlook(const Store& store, const Stage& stage, std::span<const
 double end_for(const Store& store, const Stage& stage, const Ask& ask,
                const MeasureOptions& options);
 
-/// The checkpoints that at least one of the requests `asks` covers, including pruned checkpoints.
-/// A request covers no checkpoint after the end_for() of this request.
+/// The checkpoints that are covered by at least one request in `asks`, including pruned
+/// checkpoints. A request covers no checkpoint after the end_for() of this request.
 std::vector<CheckpointRecord> checkpoints_for(const Store& store, const Stage& stage,
                                               std::span<const Ask> asks,
                                               const MeasureOptions& options = {});
 
 /// The recorded Outlook::ended if the stage ended before `target_cycles` because of an `until`;
-/// otherwise null. If another experiment asked for more cycles than this `until` requires, and the
-/// stage has computed them, the result also has "cycles_asked": that experiment's target_cycles.
+/// otherwise null. If a request with another or no `until` made the stage continue further, the
+/// result also has "cycles_asked": the target_cycles of this request.
 nlohmann::json end_of(const Stage& stage);
 
 /// end_of() as text: "crystalline_percent >= 10 at cycle 25, then 15 more cycles"; "" for null.

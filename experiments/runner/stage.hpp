@@ -92,8 +92,8 @@ std::optional<std::string> why_not_again(const Store& store, const CheckpointRec
 /// would have to start from a state of the parent stage, and the file of this state was pruned.
 Replay verify_by_replay(Store& store, const CheckpointRecord& record, std::size_t threads = 1);
 
-/// Recomputes a checkpoint like verify_by_replay(), and writes its pruned, missing or damaged file
-/// again. If the new bytes do not have the recorded SHA-256, records ReplayDiverged and writes no
+/// Recomputes a checkpoint as verify_by_replay() does, and restores a pruned, missing or damaged
+/// file. If the new bytes do not have the recorded SHA-256, records ReplayDiverged and writes no
 /// file. If the replay needs a pruned state of the parent stage, restores this state first.
 Replay regenerate_checkpoint(Store& store, const CheckpointRecord& record, std::size_t threads = 1);
 

@@ -41,9 +41,9 @@ std::vector<std::byte> read_all(const Descriptor& file, std::size_t size,
 /// Calls fsync on a file or folder. Errors are thrown by fail_on().
 void sync(const Descriptor& file, const std::filesystem::path& path);
 
-/// Deletes temporary files and folders of killed programs in `folder` and, if `below` is true, in
-/// the subfolders. Their names are ".tmp-<pid>-*" or ".*.tmp-<pid>-*". A file or folder is kept
-/// while process <pid> runs, and while any process, perhaps in a container, holds a lock on it.
+/// Deletes temporary files and folders (".tmp-<pid>-*" and ".*.tmp-<pid>-*") of killed programs in
+/// `folder` and, if `below` is true, in the subfolders. A file or folder is kept while process
+/// <pid> runs, and while any process, perhaps in a container, holds a lock on it.
 void remove_leftovers(const std::filesystem::path& folder, bool below = false);
 
 /// Writes `bytes` to a temporary file in the open `folder`, named ".tmp-<pid>-<n>", with mode 0666
