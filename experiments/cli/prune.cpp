@@ -97,8 +97,9 @@ void prune(const PruneOptions& options, Context& context) {
   const std::size_t kept = std::erase_if(
       records, [&](const CheckpointRecord& c) { return why_not_again(store, c, known); });
   if (!context.json && kept > 0) {
-    fmt::print("{} kept: not bitwise reproducible (LAMMPS or another bits_version)\n",
-               counted(kept, "checkpoint"));
+    fmt::print(
+        "{} kept: not bitwise reproducible (computed by LAMMPS or with another bits_version)\n",
+        counted(kept, "checkpoint"));
   }
   const std::size_t chosen = records.size();
   const std::vector<CheckpointRecord> leftovers = store.prune_leftovers();

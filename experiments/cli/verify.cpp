@@ -82,8 +82,10 @@ nlohmann::json replay(const VerifyOptions& options, Context& context) {
   nlohmann::json list = nlohmann::json::array();
   if (!context.json) {
     if (left_out > 0) {
-      print_text("{} left out: not bitwise reproducible (LAMMPS or another bits_version)\n",
-                 counted(left_out, "checkpoint"));
+      print_text(
+          "{} left out: not bitwise reproducible (computed by LAMMPS or with another "
+          "bits_version)\n",
+          counted(left_out, "checkpoint"));
     }
     print_text("replaying up to {} of {}, --seed {}\n", count, counted(all.size(), "checkpoint"),
                seed);
