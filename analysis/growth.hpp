@@ -19,15 +19,17 @@ namespace shearcell {
 /// checkpoint. Each crystallite is counted at most once. A crystallite is not counted, for example,
 /// if more than half of its grains are later in crystallites of s grains.
 struct GrowthCount {
-  /// More than half of the grains are later in larger crystallites. Excludes `absorbed`.
+  /// Crystallites that have more than half of their grains in larger crystallites later, without
+  /// those in `absorbed`.
   std::size_t grew = 0;
-  /// More than half of the grains are later in larger crystallites, and the crystallite was
-  /// absorbed. Let E be the later crystallite that has the most of its grains. The earlier
-  /// crystallite from which E has the most grains has more than s grains.
+  /// Crystallites that have more than half of their grains in larger crystallites later, and were
+  /// absorbed: the later crystallite that has the most of their grains has more grains from an
+  /// earlier crystallite with more than s grains than from any other.
   std::size_t absorbed = 0;
-  /// More than half of the grains are later in smaller crystallites.
+  /// Crystallites that have more than half of their grains in smaller crystallites later.
   std::size_t shrank = 0;
-  /// More than half of the grains are later in smaller crystallites or in none. Excludes `shrank`.
+  /// Crystallites that have more than half of their grains in smaller crystallites or in none
+  /// later, without those in `shrank`.
   std::size_t vanished = 0;
 
   std::size_t larger() const { return grew + absorbed; }     ///< "growing" in the supplement

@@ -43,10 +43,10 @@ class Filter {
   explicit Filter(const std::vector<std::string>& wanted);
   explicit Filter(const std::vector<std::uint64_t>& wanted);
 
-  /// Whether the texts select `value`. The parts of `name`, the display name of `value`, count as
-  /// further parts of `value`. If several texts have the same keys, `value` must fit at least one
-  /// of these texts: "a=1", "a=2" and "b=3" select values with b=3 that also have a=1 or a=2.
-  /// Without texts, every value is selected.
+  /// Whether the texts select `value`. A part of a text may be a part of `value` or of `name`, the
+  /// display name of `value`. Texts with different keys must all fit. Of the texts with the same
+  /// keys, at least one must fit: "a=1", "a=2" and "b=3" select values that have b=3, and a=1 or
+  /// a=2. Without texts, every value is selected.
   bool passes(const std::string& value, const std::string& name = "");
   /// The first of the given texts that selects none of the values in seen(), or null.
   const std::string* unfound() const;
@@ -68,8 +68,8 @@ class Filter {
 /// Whether the label applies to the variant, an object of swept keys and values. is_within()
 /// compares the values.
 bool selects(const VariantLabel& label, const nlohmann::json& variant);
-/// Whether the variant, an object of swept keys and values, has the values `where`. is_within()
-/// compares the values.
+/// Whether the variant (an object of swept keys and values) has each value that `where` requires.
+/// is_within() compares the values.
 bool has_values(const nlohmann::json& variant, const nlohmann::json& where);
 
 /// Variant::swept of each variant.

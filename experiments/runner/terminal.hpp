@@ -55,7 +55,7 @@ void print_stderr(fmt::format_string<Arguments...> format, Arguments&&... argume
   write_stderr(for_terminal(fmt::format(format, std::forward<Arguments>(arguments)...)));
 }
 
-/// Returns a function that shows "WHAT done of total" on standard error. The line is
+/// Returns a function that shows "WHAT 3 of 10" for the arguments 3 and 10. The line is
 /// overwritten if moves_cursor(stderr) is true. Otherwise, a line is added at most every ten
 /// seconds. Not thread-safe.
 std::function<void(std::size_t, std::size_t)> terminal_counter(std::string what);

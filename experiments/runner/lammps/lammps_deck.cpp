@@ -324,8 +324,8 @@ fix drag grains addforce v_drag_x v_drag_y v_drag_z)",
         task_.end);
   }
 
-  // Defines the output and the number of steps: by default one shear cycle, or one second if the
-  // cell is not sheared. These lines must come before the first `run`. Otherwise LAMMPS would need
+  // Defines the output and the number of steps. By default, the steps cover one shear cycle, or one
+  // second without shear. These lines must come before the first `run`. Otherwise LAMMPS would need
   // a second setup, and would then compute the drag from the velocities that begin() has changed.
   void watching(std::string_view name) {
     const auto steps = shears_ ? cycle_steps(task_.drive)
