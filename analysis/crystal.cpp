@@ -17,8 +17,8 @@
 namespace shearcell {
 namespace {
 
-// (4 pi / 13) times the square of the coefficient of Y_6m, for m = 0..6. Orders m and -m give equal
-// squares, so each order m > 0 counts twice.
+// (4 pi / 13) times the square of the normalization factor of Y_6m, for m = 0..6. Orders m and -m
+// give equal squares, so the numbers for m > 0 include a factor of 2.
 constexpr std::array<double, 7> order_weight = {
     1.0 / 256,        2 * 42.0 / 256,    2 * 420.0 / 4096, 2 * 420.0 / 1024,
     2 * 126.0 / 1024, 2 * 2772.0 / 1024, 2 * 924.0 / 4096};

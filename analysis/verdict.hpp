@@ -85,10 +85,10 @@ Ruling ruling_of(const Interval& interval, double margin, Relation claimed);
 
 /// The verdict that follows from the estimate's interval; undecided without an estimate. If the
 /// claim has a reason why it cannot be decided, the verdict is undecidable, with this reason.
-/// `runs_needed`: the value of Verdict::runs, larger than Estimate::runs, that would decide an
-/// undecided claim with 90 % probability. The true value is assumed to be 0 (Relation::same) or
-/// twice the margin (other relations). But if the interval excludes 0, or if this assumption gives
-/// a number of at most Estimate::runs, the estimate is assumed to be the true value.
+/// `runs_needed`: number of runs (counted as in Verdict::runs) that would decide an undecided claim
+/// with 90 % probability. The assumed true value is 0 (Relation::same) or twice the margin (other
+/// relations). If the interval excludes 0, or if Estimate::runs would then be enough, the estimate
+/// is taken as the true value instead.
 Verdict decide(const Claim& claim, std::string quantity, const std::optional<Estimate>& estimate,
                std::size_t runs, std::string note, Table entered = {},
                Counted counted = Counted::runs);

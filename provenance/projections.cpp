@@ -165,9 +165,9 @@ class Projector {
 
   void operator()(const events::RunCompleted& e) const {
     const json ended = member_of(e.summary, "ended"), asked = member_of(ended, "memberships");
-    // The run is not complete if its target was raised during the computation. A run that the
-    // condition `until` ended early is also not complete if another experiment requested the run
-    // during the computation, because that experiment may need more cycles.
+    // The run is not complete if its target was raised during the computation. A run can also end
+    // early, when `until` is fulfilled. Such a run is not complete if another experiment requested
+    // it during the computation, because that experiment may need more cycles.
     run("UPDATE runs SET error = '', ends = json_insert(ends, '$[#]', json(?2)), state = "
         "iif(target_cycles > ?3 OR ?4 < (SELECT count(*) FROM memberships WHERE run = ?1), "
         "'declared', 'completed') WHERE id = ?1",

@@ -40,7 +40,7 @@ HEADLINES = [
     ("C", "C.critical_size@amplitude_rad=0.0833",
      "critical size [grains], A = 0.0833: equal numbers of crystallites of this size grow and shrink", "about 16"),
     ("committor", "committor.size@amplitude_rad=0.0833",
-     "critical size [grains], A = 0.0833: a different small noise is added to one state for each run; a crystallite of this size grows in half of these runs",
+     "critical size [grains], A = 0.0833: many runs start from the same state, each with its own small noise; a crystallite of this size grows in half of these runs",
      "16, by the definition in the row above", "another observable"),
     ("S7", "S7.inner", "share of nuclei in the inner half of the width minus the share in the outer half", "0"),
     ("S7", "S7.top", "share of nuclei in the upper third of the height minus the share in the lower third", "over 0.2"),
