@@ -65,7 +65,8 @@ void check_stage(const Stage& stage) {
 /// Steps of the parent at which the stage may have started. If the parent is a packing, each of its
 /// completed attempts gives two steps: the step of the last checkpoint of this attempt, and the
 /// largest step of all checkpoints up to then, including those of earlier attempts. The two steps
-/// can differ after a merge. If the parent is not a packing, the only step is that of starting_state().
+/// can differ after a merge. If the parent is not a packing, the only step is that of
+/// starting_state().
 std::set<std::uint64_t> starting_steps(const Store& store, const Stage& stage) {
   std::set<std::uint64_t> steps;
   if (store.stage(stage.parent).kind != name_of(StageKind::prepare)) {
