@@ -209,7 +209,8 @@ std::optional<Estimate> censored_difference(CensoredValues a, CensoredValues b, 
   const double t = quantile_at(level, paired ? n : welch);
   const Interval x = fitted(a, {}, t).interval, y = fitted(b, {}, t).interval;
   const Eigen::VectorXd u = residuals(a, first), v = residuals(b, second);
-  const double rho = paired ? u.dot(v) / (u.norm() * v.norm()) : 0;
+  const double norms = u.norm() * v.norm();
+  const double rho = paired && norms > 0 ? u.dot(v) / norms : 0;
   const auto joined = [rho](double p, double q) {
     return std::isfinite(p + q) ? std::sqrt(std::max(0.0, p * p + q * q - 2 * rho * p * q))
                                 : infinite;

@@ -175,12 +175,12 @@ Verdict at_looks(const ClaimSpec& claim, Claim stated, const ClaimSides& sides,
   Verdict verdict;
   std::size_t taken = 0;
   for (const std::size_t look : looks) {
-    if (look > ended || verdict.ruling != Ruling::undecided) break;
+    if (look > ended || is_firm(verdict.ruling)) break;
     verdict = of_first(taken = look);
   }
   const auto next = std::ranges::upper_bound(looks, ended);
   const std::size_t shown = ended > 0 ? ended : seeds.size();
-  if (verdict.ruling == Ruling::undecided && shown != taken) {
+  if (!is_firm(verdict.ruling) && shown != taken) {
     verdict = of_first(shown);
     withhold(verdict);
   }
@@ -190,7 +190,14 @@ Verdict at_looks(const ClaimSpec& claim, Claim stated, const ClaimSides& sides,
              fmt::format("{} of {} have ended; the next look (interim analysis) is at {}", ended,
                          counted(seeds.size(), "seed"), counted(*next, "seed")));
     if (looks.size() > 1 && verdict.estimate && std::isfinite(verdict.spread)) {
-      const auto power = power_of(stated, *verdict.estimate, verdict.spread, verdict.groups, looks);
+      Claim powered = stated;
+      powered.margin = verdict.margin;  // of a bound: the published number
+      // A seed may have several runs (one of each variant), or a run that has no number.
+      const auto used = std::ranges::count_if(std::span(seeds).first(shown),
+                                              [&](auto seed) { return begun.contains(seed); });
+      const double spread =
+          verdict.spread * std::sqrt(static_cast<double>(used) / static_cast<double>(verdict.runs));
+      const auto power = power_of(powered, *verdict.estimate, spread, verdict.groups, looks);
       const LookPower& there = power[static_cast<std::size_t>(next - looks.begin())];
       verdict.power = there.as_claimed + there.against;
       add_note(verdict.note,

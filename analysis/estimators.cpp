@@ -230,6 +230,29 @@ std::vector<CensoredValue> over_packings(RunGroup runs, std::span<const Censored
   return means;
 }
 
+std::vector<double> NumbersOfRuns::take(const Scalar& scalar, RunGroup group) {
+  std::vector<double> numbers;
+  std::size_t without = 0;
+  for (const FrameRun* run : group) {
+    const RunValue value = scalar.of(*run);
+    numbers.push_back(value.or_nan());
+    if (value.missing == Missing::nothing) continue;
+    ++without;
+    ++(censored_value(value).censored ? censored : missing);
+  }
+  runs += group.size();
+  enough = enough && censored == 0 && 4 * without <= group.size();
+  return numbers;
+}
+
+std::string NumbersOfRuns::why_not() const {
+  return enough ? ""
+                : fmt::format(
+                      "no verdict, because {} of {} runs end before the event and {} have "
+                      "no number",
+                      censored, runs, missing);
+}
+
 Table entered_with(const std::vector<TableColumn>& columns) {
   Table entered{.columns = {"group", "seed", "packing"}};
   entered.columns.insert(entered.columns.end(), columns.begin(), columns.end());

@@ -87,6 +87,19 @@ CensoredValue censored_value(const RunValue& value);
 /// averaged values is censored. Values that are not finite are left out.
 std::vector<CensoredValue> over_packings(RunGroup runs, std::span<const CensoredValue> values);
 
+/// For an estimator that needs a number from every run: counts the runs without a number. The runs
+/// that are left out could bias the verdict, so none of them may be censored, and in each group at
+/// least three quarters of the runs must have a number. [choice]
+struct NumbersOfRuns {
+  std::size_t runs = 0, censored = 0, missing = 0;
+  bool enough = true;
+
+  /// The number of each run of the group; NaN if the run has none.
+  std::vector<double> take(const Scalar& scalar, RunGroup group);
+  /// Why the estimator cannot be used, for the verdict's note; "" if `enough` is true.
+  std::string why_not() const;
+};
+
 /// The note of a verdict that uses no runs.
 inline constexpr const char* no_group =
     "the claim selects no runs, or its runs differ in a swept parameter that is not in the claim";

@@ -140,6 +140,10 @@ std::string headline_of(const std::map<Ruling, std::size_t>& rulings) {
   return fmt::format("{}", fmt::join(words, ", "));
 }
 
+bool is_firm(Ruling ruling) {
+  return ruling != Ruling::undecided && ruling != Ruling::undecidable;
+}
+
 void withhold(Verdict& verdict) {
   if (verdict.ruling != Ruling::undecidable) verdict.ruling = Ruling::undecided;
 }

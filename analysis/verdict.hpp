@@ -99,6 +99,9 @@ std::map<Ruling, std::size_t> rulings_of(std::span<const Verdict> verdicts);
 /// The rulings in words, such as "1 agrees, 1 refuted"; "" without verdicts.
 std::string headline_of(const std::map<Ruling, std::size_t>& rulings);
 
+/// Whether the ruling decides the claim: neither `undecided` nor `undecidable`.
+bool is_firm(Ruling ruling);
+
 /// Changes the ruling to `undecided`. The ruling `undecidable` is not changed.
 void withhold(Verdict& verdict);
 

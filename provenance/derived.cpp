@@ -77,9 +77,9 @@ DerivedCache::DerivedCache(const fs::path& store_folder, Access access)
 void DerivedCache::open() {
   const auto type = fs::symlink_status(file_).type();
   if (type != fs::file_type::regular && type != fs::file_type::not_found) {
-    throw NotOurs(
-        file_.string() +
-        ": the cache of measures must be a file, but this is a folder, link or device; remove it");
+    throw NotOurs(file_.string() +
+                  ": the cache of measures must be a file, but this is a folder, link or device; "
+                  "move it to another place");
   }
   const bool empty = type == fs::file_type::not_found || fs::is_empty(file_);
   if (read_only_ && empty) return;
@@ -93,7 +93,9 @@ void DerivedCache::open() {
                                        kDerivedTable, kApplicationId, kLayout));
   }
   if (database.integer("PRAGMA application_id") != kApplicationId) {
-    throw NotOurs(file_.string() + ": this database belongs to another program; remove it");
+    throw NotOurs(file_.string() +
+                  ": this database belongs to another program; move it to another "
+                  "place");
   }
   if (database.integer("PRAGMA user_version") != kLayout) {
     throw StoreDamaged(file_.string() + ": the database has an unknown layout version");
@@ -176,6 +178,12 @@ Digests DerivedCache::digests(const std::string& checkpoint, bool damaged_too) {
     }
   });
   return found;
+}
+
+void DerivedCache::forget(const std::string& checkpoint) {
+  attempt([&](sqlite::Database& database) {
+    sqlite::Statement(database, "DELETE FROM derived WHERE checkpoint = ?", checkpoint).run();
+  });
 }
 
 void DerivedCache::put(std::span<const DerivedObject> objects) {

@@ -56,6 +56,9 @@ class DerivedCache {
   /// Stores all objects or, after an error, none. Replaces objects with the same keys.
   void put(std::span<const DerivedObject> objects);
 
+  /// Deletes all objects of the checkpoint.
+  void forget(const std::string& checkpoint);
+
   /// Why nothing can be stored; "" if objects can be stored.
   const std::string& trouble() const { return trouble_; }
   /// Whether reading or writing failed for a reason outside the file, such as a full disk.

@@ -137,7 +137,10 @@ std::vector<std::string> ObjectStore::strangers(const std::set<std::string>& kno
   const fs::path objects = folder_ / kFolder;
   if (!fs::is_directory(fs::symlink_status(objects))) return found;
   const fs::recursive_directory_iterator end;
-  for (fs::recursive_directory_iterator entry(objects); entry != end; ++entry) {
+  // If a folder cannot be read, reading its objects fails, too, and `verify` reports that.
+  for (fs::recursive_directory_iterator entry(objects,
+                                              fs::directory_options::skip_permission_denied);
+       entry != end; ++entry) {
     if (entry.depth() == 0 && fs::is_directory(entry->symlink_status())) continue;  // objects/ab
     entry.disable_recursion_pending();
     const std::string file = entry->path().lexically_relative(folder_).generic_string();

@@ -12,7 +12,7 @@ std::string counted(std::size_t number, std::string_view one) {
 }
 
 void add_note(std::string& note, std::string_view part, std::string_view separator) {
-  if (!note.empty()) note += separator;
+  if (!note.empty() && !part.empty()) note += separator;
   note += part;
 }
 

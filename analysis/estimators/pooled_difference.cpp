@@ -51,7 +51,7 @@ Verdict decide_pooled(const ClaimSpec& claim, const Claim& stated, RunGroup a, R
     }
   }
   double weights = 0, sum = 0, variance = 0, fourth = 0;
-  std::size_t pooled = 0, censored = 0, runs[2] = {0, 0};
+  std::size_t pooled = 0, censored = 0, all = 0, left_out = 0, runs[2] = {0, 0};
   for (const auto& [stratum, both] : strata) {
     std::vector<CensoredValue> values[2];
     std::optional<Estimate> mean[2];
@@ -59,7 +59,14 @@ Verdict decide_pooled(const ClaimSpec& claim, const Claim& stated, RunGroup a, R
       values[k] = over_packings(both.at(k).first, both.at(k).second);
       mean[k] = censored_mean(values[k], stated.level);
     }
-    if (!mean[0] || !mean[1] || !std::isfinite(mean[0]->spread + mean[1]->spread)) continue;
+    if (both[0].first.empty() || both[1].first.empty()) continue;  // nothing to compare
+    const bool usable = mean[0] && mean[1] && std::isfinite(mean[0]->spread + mean[1]->spread);
+    for (const auto& [of_side, numbers] : both) {
+      all += numbers.size();
+      left_out += static_cast<std::size_t>(std::ranges::count_if(
+          numbers, [&](const CensoredValue& v) { return !usable || !std::isfinite(v.value); }));
+    }
+    if (!usable) continue;
     ++pooled;
     const double n = static_cast<double>(values[0].size()),
                  m = static_cast<double>(values[1].size()), weight = n * m / (n + m);
@@ -76,23 +83,24 @@ Verdict decide_pooled(const ClaimSpec& claim, const Claim& stated, RunGroup a, R
     }
   }
   std::optional<Estimate> estimate;
-  if (pooled > 0) {
+  if (variance > 0 && 4 * left_out <= all) {
     const double value = sum / weights,
                  t = student_quantile((1 + stated.level) / 2, variance * variance / fourth);
     const double half = t * std::sqrt(variance) / weights;
     estimate = estimate_with(value, {value - half, value + half}, t, std::min(runs[0], runs[1]));
     estimate->groups = 2;
   }
+  std::string note = no_group;
+  if (!strata.empty()) {
+    note = fmt::format(
+        "{} and {} runs on the two sides, from {} of {}; the runs of a group differ only in the "
+        "compared parameter and the seed, and each side of a group needs at least {} values",
+        runs[0], runs[1], pooled, counted(strata.size(), "group"), least_runs);
+    if (4 * left_out > all) add_note(note, "more than a quarter of the runs are left out");
+  }
   Verdict verdict =
       decide(stated, "pooled difference in " + number.name, estimate, std::min(runs[0], runs[1]),
-             strata.empty()
-                 ? std::string(no_group)
-                 : fmt::format(
-                       "{} and {} runs on the two sides, from {} of {}; the runs of a group differ "
-                       "only in the compared parameter and the seed, and each side of a group "
-                       "needs at least {} values",
-                       runs[0], runs[1], pooled, counted(strata.size(), "group"), least_runs),
-             std::move(entered), Counted::runs_per_variant);
+             std::move(note), std::move(entered), Counted::runs_per_variant);
   verdict.censored = censored;
   return verdict;
 }

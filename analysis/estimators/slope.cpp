@@ -36,11 +36,13 @@ Verdict decide_slope(const ClaimSpec& claim, const Claim& stated, RunGroup runs,
     censored += value.censored ? 1 : 0;
     enter(*run, {x, found.or_nan(), std::string(name_of(found.missing)), found.above}, entered);
   }
+  std::string note = fmt::format("{} of {} runs in {} have a value", values.size() - censored,
+                                 runs.size(), counted(variants.size(), "variant"));
+  const bool enough = 4 * values.size() >= 3 * runs.size();
+  if (!enough) add_note(note, "more than a quarter of the runs are left out");
   std::optional<Estimate> estimate;
-  if (variants.size() > 1) estimate = censored_slope(values, at, stated.level);
-  Verdict verdict = decide(stated, words_of_slope(claim), estimate, values.size(),
-                           fmt::format("{} of {} runs in {} have a value", values.size() - censored,
-                                       runs.size(), counted(variants.size(), "variant")),
+  if (variants.size() > 1 && enough) estimate = censored_slope(values, at, stated.level);
+  Verdict verdict = decide(stated, words_of_slope(claim), estimate, values.size(), std::move(note),
                            std::move(entered));
   verdict.censored = censored;
   return verdict;

@@ -3,6 +3,7 @@
 // margin, the swept parameters hardly change the number.
 #include <fmt/format.h>
 
+#include <limits>
 #include <map>
 
 #include "analysis/estimators.hpp"
@@ -21,15 +22,14 @@ Verdict decide_spread(const ClaimSpec& claim, const Claim& stated, RunGroup runs
   for (const FrameRun* run : runs) variants[run->place.variant].push_back(run);
   std::vector<std::vector<double>> groups;
   std::size_t with_number = 0;
+  NumbersOfRuns numbers;
   Table entered = entered_with({"value", "missing"});
   for (const auto& [variant, members] : variants) {
-    std::vector<double> values;
     for (const FrameRun* run : members) {
       const RunValue value = number.of(*run);
-      values.push_back(value.or_nan());
       enter(*run, {value.or_nan(), std::string(name_of(value.missing))}, entered);
     }
-    values = over_packings(members, values);
+    std::vector<double> values = over_packings(members, numbers.take(number, members));
     with_number += values.size();
     if (!values.empty()) groups.push_back(std::move(values));
   }
@@ -38,16 +38,19 @@ Verdict decide_spread(const ClaimSpec& claim, const Claim& stated, RunGroup runs
                          : fmt::format("{} independent values from {} runs of {}", with_number,
                                        runs.size(), counted(groups.size(), "variant"));
   std::optional<Estimate> estimate;
-  if (const auto found = variance_between(groups, stated.level)) {
+  add_note(note, numbers.why_not());
+  if (const auto found = variance_between(groups, stated.level); found && numbers.enough) {
+    // The spread is NaN: the number of runs that would decide the claim is unknown.
     estimate = Estimate{.value = found->value,
                         .interval = {0, found->upper_limit},
-                        .runs = with_number / groups.size()};
+                        .runs = with_number / groups.size(),
+                        .spread = std::numeric_limits<double>::quiet_NaN()};
     add_note(note,
              fmt::format("variance ratio F = {:.3g}; the interval extends from 0 to the upper "
                          "{:.3g} % confidence limit",
                          found->f, 50 * (1 + stated.level)));
   }
-  if (!estimate) {
+  if (!estimate && numbers.enough) {
     add_note(note, "at least two variants are needed, and one of them needs two values or more");
   }
   return decide(stated, words_of_spread(claim), estimate,

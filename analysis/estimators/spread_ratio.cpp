@@ -28,11 +28,12 @@ Verdict decide_ratio(const ClaimSpec& claim, const Claim& stated, RunGroup runs,
   other.compare = claim.against;
   const Scalar first = number_of_the_run.scalar(claim), second = number_of_the_run.scalar(other);
   Table entered = entered_with({"value", "other"});
+  NumbersOfRuns numbers;
+  const std::vector<double> xs = numbers.take(first, runs), ys = numbers.take(second, runs);
   std::map<std::string, std::vector<std::pair<double, double>>> variants;
-  for (const FrameRun* run : runs) {
-    const double x = first.of(*run).or_nan(), y = second.of(*run).or_nan();
-    enter(*run, {x, y}, entered);
-    if (std::isfinite(x) && std::isfinite(y)) variants[run->place.variant].emplace_back(x, y);
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    enter(*runs[k], {xs[k], ys[k]}, entered);
+    if (std::isfinite(xs[k] + ys[k])) variants[runs[k]->place.variant].emplace_back(xs[k], ys[k]);
   }
   double n = 0, xx = 0, yy = 0, xy = 0;
   for (const auto& [variant, pairs] : variants) {
@@ -49,16 +50,18 @@ Verdict decide_ratio(const ClaimSpec& claim, const Claim& stated, RunGroup runs,
   const auto with_both = static_cast<std::size_t>(n);
   const double freedom = n - static_cast<double>(variants.size()) - 1;
   std::optional<Estimate> estimate;
-  if (freedom >= 1 && xx > 0 && yy > 0) {
+  if (freedom >= 1 && xx > 0 && yy > 0 && numbers.enough) {
     const double t = student_quantile((1 + stated.level) / 2, freedom);
     const double k = 1 + 2 * (1 - xy * xy / (xx * yy)) * t * t / freedom;
     const double log_ratio = std::log(xx / yy) / 2, half = std::acosh(k) / 2;
     estimate = mapped(estimate_with(log_ratio, {log_ratio - half, log_ratio + half}, t, with_both),
                       [](double log) { return std::expm1(log); });
   }
-  return decide(stated, words_of_ratio(claim) + ", minus 1", estimate, with_both,
-                fmt::format("{} of {} runs have values of both measures, in {}; Pitman-Morgan test",
-                            with_both, runs.size(), counted(variants.size(), "variant")),
+  std::string note =
+      fmt::format("{} of {} runs have values of both measures, in {}; Pitman-Morgan test",
+                  with_both, runs.size(), counted(variants.size(), "variant"));
+  add_note(note, numbers.why_not());
+  return decide(stated, words_of_ratio(claim) + ", minus 1", estimate, with_both, std::move(note),
                 std::move(entered));
 }
 

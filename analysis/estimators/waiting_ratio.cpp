@@ -74,6 +74,12 @@ Verdict decide_waits(const ClaimSpec& claim, const Claim& stated, RunGroup first
       decide(stated, fmt::format("log2 of the ratio of the cycles of {}, log-rank", event),
              estimate, runs, std::move(note), std::move(entered), Counted::runs_per_variant);
   verdict.waits_for = event;
+  if (estimate && estimate->interval.low == estimate->interval.high) {
+    add_note(verdict.note,
+             "no verdict, because the interval has no width: the checkpoints are too far apart to "
+             "show the scatter of the waiting times");
+    withhold(verdict);
+  }
   return verdict;
 }
 

@@ -289,14 +289,15 @@ Verdict critical_size_is_published(const AmplitudeGrowth& one) {
       "vanished crystallites ({} of {} that shrink) are left out",
       in_grains(one.without_absorbed), all.absorbed, all.larger(), in_grains(one.without_vanished),
       all.vanished, all.smaller());
-  Verdict verdict =
-      decide({.text = fmt::format("C: the critical size at A = {} rad is about {} grains",
-                                  one.amplitude, published),
-              .margin = margin_critical_size,
-              .id = fmt::format("C.critical_size@amplitude_rad={}", one.amplitude),
-              .cannot_be_decided = one.published->cannot_be_decided},
-             fmt::format("critical size, relative difference from {} grains", published), relative,
-             counts.size(), note, growth_entered(one.runs, one.published->n_bin));
+  Verdict verdict = decide(
+      {.text = fmt::format("C: the critical size at A = {} rad is about {} grains", one.amplitude,
+                           published),
+       .margin = margin_critical_size,
+       .id = fmt::format("C.critical_size@amplitude_rad={}", one.amplitude),
+       .cannot_be_decided =
+           one.published->amplitude_rad == one.amplitude ? one.published->cannot_be_decided : ""},
+      fmt::format("critical size, relative difference from {} grains", published), relative,
+      counts.size(), note, growth_entered(one.runs, one.published->n_bin));
   if (critical && !(low > 0 && high / low <= 1 + 2 * margin_critical_size)) {
     // No number of runs suffices: the sampling error of the supplement's value exceeds the margin.
     verdict.runs_needed.reset();

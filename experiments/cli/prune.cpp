@@ -15,8 +15,10 @@
 #include "core/machine.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/figures/keep_measures.hpp"
+#include "experiments/runner/audit.hpp"
 #include "experiments/runner/stage.hpp"
 #include "experiments/runner/stop.hpp"
+#include "provenance/derived.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/words.hpp"
 
@@ -117,6 +119,10 @@ void prune(const PruneOptions& options, Context& context) {
   const bool go = any && (options.yes || (!context.json && agreed()));
   Freed freed;
   if (go) {
+    // The log will vouch for the cached measures, so some of them are computed again before.
+    const MeasureCheck check =
+        check_sample(store, store.folder(), records, kSampled, seed_of(store.head()));
+    if (!check.findings.empty()) throw StoreDamaged(check.findings.front().message);
     const MeasureOptions measuring{
         .workers = usable_cores(),
         .report =
@@ -241,12 +247,14 @@ void regenerate(const RegenerateOptions& options, Context& context) {
   catch_stop_signals();
   nlohmann::json list = nlohmann::json::array();
   RunLineages known;
+  DerivedCache measures(store.folder());
   for (const CheckpointRecord& record : records) {
     if (stop_requested()) {
       fail(context, kInterrupted);
       break;
     }
     list.push_back(regenerate_one(store, record, options.threads, known, context));
+    if (named && store.load_if_readable(record)) measures.forget(record.sha256);
   }
   if (context.json) print_json({{"checkpoints", list}});
 }
@@ -319,6 +327,8 @@ void add_regenerate(CLI::App& app, Context& context) {
       R"(Recomputes each state from the nearest earlier checkpoint that has a file. If there is no such
 checkpoint in the stage, also recomputes the file of the initial state. If a state or a file does
 not have the recorded hash, no file is written, ReplayDiverged is recorded, and the exit code is 4.
+Also deletes the cached measures of checkpoints that are given by their hashes. The next command that
+needs these measures computes them again.
 Examples:
   shearcell regenerate 2a2c47ca
   shearcell regenerate --experiment drag --scale desk

@@ -146,20 +146,25 @@ void name_variants(const std::vector<VariantLabel>& labels, const std::string& e
   }
 }
 
-/// Sets Frame::seeds and Frame::looks. Adds to Frame::pending the planned runs that are not yet
-/// declared. Does nothing if the sweep has more variants than ManifestLimits::runs.
-void add_planned(const RegisteredManifest& manifest, CollectedRuns& collected) {
+/// Adds to Frame::seeds the seeds of the manifest, and to Frame::pending the planned runs that are
+/// not among the collected runs. If all runs were added by `run --engine`, they count as the
+/// planned runs. Sets Frame::looks, unless the figure combines experiments: their looks may differ.
+/// Does nothing if the sweep has more variants than ManifestLimits::runs.
+void add_planned(const RegisteredManifest& manifest, bool combined, CollectedRuns& collected) {
+  const auto of_engine = [](const FrameRun& run) { return run.place.swept.contains("engine"); };
+  const bool all_of_engine = std::ranges::all_of(collected.runs, of_engine);
   std::set<std::pair<std::uint64_t, nlohmann::json>> declared;
   for (const FrameRun& run : collected.runs) {
-    if (run.place.experiment == manifest.experiment) {
-      declared.emplace(run.place.seed, run.place.swept);
-    }
+    if (run.place.experiment != manifest.experiment) continue;
+    nlohmann::json swept = run.place.swept;
+    if (all_of_engine) swept.erase("engine");
+    declared.emplace(run.place.seed, std::move(swept));
   }
   for (const Scale& scale : scales_of(manifest.content)) {
     if (scale.name != collected.scale || variant_count(scale.sweep) > ManifestLimits::runs)
       continue;
     const std::vector<std::uint64_t>& seeds = scale.seeds.values;
-    collected.looks = scale.looks;
+    if (!combined) collected.looks = scale.looks;
     std::ranges::copy_if(seeds, std::back_inserter(collected.seeds), [&](std::uint64_t seed) {
       return std::ranges::count(collected.seeds, seed) == 0;
     });
@@ -402,11 +407,10 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
   if (measured) {
     std::set<std::string> experiments;
     for (const FrameRun& run : collected.runs) experiments.insert(run.place.experiment);
-    const bool all_seeds = selection.seeds.empty() && selection.variants.empty();
     for (const RegisteredManifest& manifest : manifests) {
       if (!experiments.contains(manifest.experiment)) continue;
       name_variants(manifest.content.labels, manifest.experiment, collected);
-      if (all_seeds) add_planned(manifest, collected);
+      add_planned(manifest, !wanted.figure.of.empty(), collected);
     }
     if (!wanted.figure.of.empty()) join(wanted.figure.of, collected);
     for (const FrameRun& run : collected.runs) collected.variants.push_back(run.place.swept);

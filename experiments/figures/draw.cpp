@@ -223,7 +223,15 @@ void make_of_runs(const Store& store, const WantedFigure& wanted, const FigureOp
                     without_interior, counted(made.runs, "run")));
   }
   static_cast<FigureResult&>(made) = figure.make(frame);
+  const bool computed = find_named(computed_figures(), figure.name) != nullptr;
   for (Verdict& verdict : made.verdicts) {
+    if (computed && !frame.pending.empty()) {  // other claims do this at each look
+      withhold(verdict);
+      const bool one = frame.pending.size() == 1;
+      add_note(verdict.note, fmt::format("{} {} not ended, or {} not selected",
+                                         counted(frame.pending.size(), "planned run"),
+                                         one ? "has" : "have", one ? "is" : "are"));
+    }
     // The estimate may be missing because runs of the claim were not selected.
     if (verdict.estimate || options.runs.variants.empty()) continue;
     verdict.note =

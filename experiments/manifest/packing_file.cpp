@@ -154,14 +154,17 @@ Meaning meaning_of(const Column& column, bool units) {
   static const string before = "([cfv]_|d2?_)?(particle|grain|sphere|atom|bead|ball)?[ _]?(";
   static const string after = ")([ _]*[\\[({/:.].*|[ _](m|d|si|lj|.?.m)([ _]?(per|p)?[ _]?s)?)?";
   static const string size = "(?!.*(max|min|cut|curvature|gyration|ratio)).*";
-  static const std::regex radius(before + "r|rads?|rp" + after + "|" + size + "radi(us|i).*");
-  static const std::regex diameter(before + "d|dp|dias?|sizes?|sigma|shape[ _]?[xyz]" + after +
-                                   "|" + size + "diam(?!o).*");
+  static const string index = "[ _]?(p|i|0|50|eq|eff|mean)";  // d_p, R0, d50
+  static const std::regex radius(before + "r|rads?|r" + index + after + "|" + size +
+                                 "radi(us|i).*");
+  static const std::regex diameter(before + "d|d" + index + "|dias?|sizes?|sigma|shape[ _]?[xyz]" +
+                                   after + "|" + size + "diam(?!o).*");
   static const std::regex velocity(
       "(?!.*(ang|rot|omega|spin|vir|vor))"
       "(" +
       before + "(v|mom|speed)[ _]?[xyz0-9]?|v(cm|el|lin|avg)?[xyz]u?|[xyz](v|vel|dot)" + after +
-      "|[pu][ _]?([xyz]|[:.\\[(][0-3xyz][\\])]?)|d([xyzr]|pos)/?dt|([cf]_)?vel.*|"
+      "|[pu][ "
+      "_]?([xyz]|[:.\\[(][0-3xyz][\\])]?)|d([xyzr]|pos)/?dt|(.*[^a-z])?(vel.*|v[xyz]([^a-z].*)?)|"
       ".*(veloc|momenta|momentum).*)");
   static const std::regex position(
       before + "(pos|positions?|coords?|coordinates?|points?)[ _]?[xyz0-9]?|[xyz](su?|pos|coord)" +
@@ -205,6 +208,7 @@ Meaning meaning_of(const Column& column, bool units) {
 bool concerns_grains(string_view name) {
   static const std::regex concerns(
       "(^|[^a-z]|super)lattice|(^|[^a-z]|sim|super)box|origin($|[^a-z])|"
+      "(^|[^a-z])(domain|bounds|tilt)($|[^a-z])|"
       "(^|[^a-z]|unit|super|sim)cell(?!_height_d$|_?id)|^properties$|"
       "^columns$|^(l|len|length|size)_?[xyz]$|^[xyz]_?(lo|hi|min|max|len|length|size)($|[^a-z])|"
       "^(fractional|scaled|reduced)|^(coords?|coordinates?)($|_?(type|system|mode|style|format))|"
@@ -460,7 +464,8 @@ class PackingReader {
       const auto count =
           k + 2 < parts.size() ? read_number<std::uint16_t>(parts[k + 2]) : std::nullopt;
       if (!count || *count == 0) refuse_form(parts[k]);
-      grains_.columns.push_back({parts[k], *count});
+      const bool atomic = parts[k] == "Z" && parts[k + 1] == "I";  // quippy writes this column
+      grains_.columns.push_back({atomic ? "atomic number" : parts[k], *count});
     }
   }
 
@@ -633,12 +638,12 @@ class PackingReader {
   /// unknown unit.
   void take_units_of_text(string_view line) {
     static const std::regex unit(
-        "\\b(?:(?:units?|coord\\w{0,9})\\b"
+        "\\b(?:(?:units?|lengths?|distances?|positions?|coord\\w{0,9})\\b"
         "(?:[\\s=:\"'\\[(]|of|in|are|is|lengths?|distances?|positions?){1,12}|"
         "in\\s{1,9}(?!(?:real|metal|micro|nano|electron|si|lj|cgs)\\b))"
         "(real|metal|micro|nano|electron|si|lj|cgs|m|d|(?:[cmunp]|\xC2\xB5|\xCE\xBC)m|fractional|"
         "scaled|reduced(?!\\s{1,9}unit)|(?:milli|centi|micro|nano)?met(?:er|re)s?|angstroms?)\\b"
-        "(?!\\s*=|-|/|\\^)|"
+        "(?!\\s*=|\\s{1,9}dimension|[-/^:])|"
         "\\b(?:fractional|scaled|reduced)\\s{1,9}coord|"
         "\\b(?:(?:lattice|length|box|position)_?)?scale(?:_?factor)?=[0-9.]+(?![\\w.])",
         std::regex::icase);
@@ -721,8 +726,8 @@ class PackingReader {
     for (auto& [column, meaning, field] : candidates) {
       const auto other = std::ranges::find(uses, meaning.first, &Use::quantity);
       if (meaning.first == kQuantities || (other != uses.end() && other->rank < meaning.rank)) {
-        if (lower(column.name) == "unit" || lower(column.name) == "units") refuse_form(column.name);
-        leave(column.name.empty() ? fmt::format("column {}", field + 1) : string(column.name));
+        if (column.name.empty()) leave(fmt::format("column {}", field + 1));
+        leave_or_refuse(column.name);
         continue;
       }
       if (meaning.rank == Meaning::probable && meaning.first != kDiameter) {

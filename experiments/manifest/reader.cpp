@@ -1248,6 +1248,11 @@ struct Reader {
     }
     reject_if(claim.published && !claim.published->value, published, "lacks value",
               "Give the published number as `value`.");
+    const Estimator& estimator = estimator_of(claim);
+    const bool takes_published =
+        estimator.scalar != nullptr || estimator.name == rate_exponent.name;
+    reject_if(!takes_published && reaches == nullptr, published,
+              fmt::format("cannot be used with `estimator: {}`", estimator.name), "Leave it out.");
     reject_if(claim.where.contains("cycle"), in.find("where"), "selects checkpoints",
               "Use `at_cycle` or `cycles`.");
     reject_if(published == nullptr && !of_all, in.find("of"), "can only be used with `published`",

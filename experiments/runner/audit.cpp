@@ -282,27 +282,38 @@ std::vector<Finding> check_runs(const Store& store) {
   return findings;
 }
 
-MeasureCheck check_measures(const Store& store, const std::filesystem::path& folder,
-                            std::size_t count, std::uint64_t seed) {
+MeasureCheck check_sample(const Store& store, const std::filesystem::path& folder,
+                          std::vector<CheckpointRecord> records, std::size_t count,
+                          std::uint64_t seed) {
   DerivedCache cache(folder, Access::read);
   MeasureSources sources(store);
-  std::vector<CheckpointRecord> cached;  // checkpoints with cached measures
-  for (const Stage& stage : store.stages()) {
-    for (CheckpointRecord& record : store.checkpoints(stage.id)) {
-      if (!cached_measures(record, cache, sources).empty()) cached.push_back(std::move(record));
-    }
-  }
-  const std::vector<CheckpointRecord> chosen = sample(cached, count, seed);
-  MeasureCheck check{.cached = cached.size(), .computed = chosen.size()};
+  std::erase_if(records, [&](const CheckpointRecord& record) {
+    return cached_measures(record, cache, sources).empty();
+  });
+  const std::vector<CheckpointRecord> chosen = sample(records, count, seed);
+  MeasureCheck check{.cached = records.size(), .computed = chosen.size()};
   for (const CheckpointRecord& record : chosen) {
     const std::string wrong =
         wrong_measure(store, record, cached_measures(record, cache, sources), sources);
     if (wrong.empty()) continue;
     check.findings.push_back(
         {Finding::Severity::error, (folder / DerivedCache::kFile).string(), record.run,
-         fmt::format("checkpoint {:.12}, {}; delete derived.sqlite and draw the figures again",
+         fmt::format("checkpoint {0:.12}, {1}; `shearcell regenerate {0:.12}` deletes the cached "
+                     "values of this checkpoint, and the next command computes them again",
                      record.sha256, wrong)});
   }
+  return check;
+}
+
+MeasureCheck check_measures(const Store& store, const std::filesystem::path& folder,
+                            std::size_t count, std::uint64_t seed) {
+  std::vector<CheckpointRecord> all;
+  for (const Stage& stage : store.stages()) {
+    const std::vector<CheckpointRecord> of_stage = store.checkpoints(stage.id);
+    all.insert(all.end(), of_stage.begin(), of_stage.end());
+  }
+  MeasureCheck check = check_sample(store, folder, std::move(all), count, seed);
+  DerivedCache cache(folder, Access::read);
   check_pruned(Store(folder, Access::read), cache, check);
   return check;
 }
@@ -311,7 +322,6 @@ std::vector<MergeReport> merge_stores(Store& store,
                                       const std::vector<std::filesystem::path>& sources,
                                       const std::set<std::string>& runs,
                                       std::vector<Finding>* refused) {
-  constexpr std::size_t kSampled = 3;
   std::vector<MergeReport> reports = store.merge(sources, runs);
   // The seed comes from the head of `store`. Someone who forges one of the `sources` does not know
   // this head, and so cannot predict which checkpoints are checked.
@@ -323,6 +333,7 @@ std::vector<MergeReport> merge_stores(Store& store,
       const std::string why = copy_measures(store, from);
       if (!why.empty()) check.findings.push_back({Finding::Severity::note, source, "", why});
     }
+    for (Finding& finding : check.findings) finding.subject = source;
     if (refused != nullptr) {
       refused->insert(refused->end(), check.findings.begin(), check.findings.end());
     }

@@ -40,11 +40,17 @@ struct MeasureCheck {
   std::vector<Finding> findings = {};  ///< errors
 };
 
-/// Checks the cached measures in folder/derived.sqlite. `folder` is the folder of `store`, or of
-/// another store that was merged into `store`. Recomputes measures of `count` sampled checkpoints
-/// of `store` and compares them with the cached ones. The relative tolerance is 1e-9, because
-/// mathematical libraries differ in the last bits. For all pruned checkpoints of the store in
-/// `folder`, compares the digests of the cached measures with the digests in the log of that store.
+/// Recomputes measures of `count` sampled `records` of `store` and compares them with the ones that
+/// are cached in folder/derived.sqlite. `folder` is the folder of `store`, or of another store that
+/// was merged into `store`. The relative tolerance is 1e-9, because mathematical libraries differ
+/// in the last bits.
+MeasureCheck check_sample(const Store& store, const std::filesystem::path& folder,
+                          std::vector<CheckpointRecord> records, std::size_t count,
+                          std::uint64_t seed);
+inline constexpr std::size_t kSampled = 3;  ///< checkpoints that `merge` and `prune` sample
+
+/// check_sample() of all checkpoints. For all pruned checkpoints of the store in `folder`, also
+/// compares the digests of the cached measures with the digests in the log of that store.
 MeasureCheck check_measures(const Store& store, const std::filesystem::path& folder,
                             std::size_t count, std::uint64_t seed);
 

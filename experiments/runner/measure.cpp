@@ -201,8 +201,11 @@ class Measuring {
     }
     sources_.add_recorded(one, one.measures);
   } catch (const AnalysisError& problem) {
-    throw StoreDamaged(std::string(DerivedCache::kFile) + " holds a wrong result (" +
-                       problem.what() + "); delete this file, and the measures are recomputed");
+    throw StoreDamaged(
+        fmt::format("{} holds a wrong result ({}); `shearcell regenerate {:.12}` "
+                    "deletes the results of this checkpoint, and the next command "
+                    "computes them again",
+                    DerivedCache::kFile, problem.what(), one.sha256));
   }
 
   const std::span<const ToMeasure> checkpoints_;

@@ -778,21 +778,46 @@ nlohmann::json to_json(const Divergence& divergence) {
           {"why", divergence.message}};
 }
 
-std::optional<std::string> why_not_again(const Store& store, const CheckpointRecord& record,
-                                         RunLineages& known) {
-  add_run_lineage(store, record.run, known);
-  const RunLineage& run = known.at(record.run);
+namespace {
+
+/// Why this program would give the steps before the checkpoint other bits; "" if it would not.
+std::string other_bits(const RunLineage& run, const CheckpointHistory& made) {
   if (engine_of(run.stage.resolved) != EngineKind::shearcell) {
     return "LAMMPS computed this state, and LAMMPS runs cannot be repeated bit for bit";
   }
-  const CheckpointHistory* made = run.find(record.sha256);
-  if (made == nullptr || !made->attempt) return std::nullopt;
-  const Attempt& by = run.attempts[*made->attempt];
-  if (by.bits_version == bits_version) return std::nullopt;
+  if (!made.attempt) return "";
+  const Attempt& by = run.attempts[*made.attempt];
+  if (by.bits_version == bits_version) return "";
   return fmt::format(
       "shearcell {} computed this state with bits_version {}, but this program has bits_version "
       "{}, so its results differ in the last bits",
       maker_of(by.host).version, by.bits_version, bits_version);
+}
+
+}  // namespace
+
+std::optional<std::string> why_not_again(const Store& store, const CheckpointRecord& record,
+                                         RunLineages& known) {
+  add_run_lineage(store, record.run, known);
+  const RunLineage& run = known.at(record.run);
+  const CheckpointHistory* made = run.find(record.sha256);
+  if (made == nullptr) return std::nullopt;
+  if (std::string why = other_bits(run, *made); !why.empty()) return why;
+  // The computation begins at the newest earlier state that this program cannot compute.
+  std::optional<CheckpointRecord> from;
+  for (const CheckpointHistory& earlier : run.checkpoints) {
+    if (earlier.record.step >= record.step) break;
+    if (!other_bits(run, earlier).empty()) from = earlier.record;
+  }
+  if (!from && !run.stage.parent.empty()) {
+    from = starting_state(store, run.stage, read_stage(run.stage.resolved).parameters);
+    if (from && !why_not_again(store, *from, known)) return std::nullopt;
+  }
+  if (!from || store.load_if_readable(*from)) return std::nullopt;
+  return fmt::format(
+      "this state was computed from cycle {:g} of run {:.12}, whose file is lost, and this program "
+      "cannot compute that file again",
+      from->cycle, from->run);
 }
 
 Replay verify_by_replay(Store& store, const CheckpointRecord& record, std::size_t threads) {

@@ -253,6 +253,26 @@ TEST(PooledDifference, ComparesRunsWithEqualParameters) {
       "compared parameter and the seed, and each side of a group needs at least 3 values");
 }
 
+TEST(PooledDifference, NeedsScatterAndMostOfTheRuns) {
+  const ClaimSpec claim{.id = "own",
+                        .compare = "phi",
+                        .estimator = "pooled_difference",
+                        .cycles = {{1, 1}},
+                        .between = {{{{"fluid", "still"}}, {{"fluid", "cell"}}}},
+                        .margin = 0.1};
+  const auto verdict = [&](std::initializer_list<double> still,
+                           std::initializer_list<double> cell) {
+    Frame frame(with_phi("still", 0.05, still));
+    for (const FrameRun& run : with_phi("cell", 0.05, cell)) frame.runs.push_back(run);
+    return claim_figure(claim).make(frame).verdicts.at(0);
+  };
+  EXPECT_EQ(verdict({0.64, 0.65, 0.66}, {0.64, 0.65, 0.66}).ruling, Ruling::agrees);
+  EXPECT_EQ(verdict({0.65, 0.65, 0.65}, {0.65, 0.65, 0.65}).ruling, Ruling::undecided);
+  const Verdict few = verdict({0.64, 0.65, 0.66, NAN, NAN, NAN}, {0.64, 0.65, 0.66});
+  EXPECT_EQ(few.ruling, Ruling::undecided);
+  EXPECT_TRUE(has(few.note, "more than a quarter of the runs are left out")) << few.note;
+}
+
 // Expected: the ratios at which the test of Pitman and Morgan has p = 0.1, by scipy.stats.
 TEST(SpreadRatio, IsThatOfPitmanAndMorgan) {
   Frame frame;
@@ -338,7 +358,9 @@ TEST(CompareWaits, CountsRunsThatEndBefore) {
   EXPECT_EQ(
       verdict.note,
       "still fluid: median cycle 16 (1 of 4 runs end before the event); second: median cycle 16 "
-      "(0 of 4 runs end before the event)");
+      "(0 of 4 runs end before the event); no verdict, because the interval has no width: the "
+      "checkpoints are too far apart to show the scatter of the waiting times");
+  EXPECT_EQ(verdict.ruling, Ruling::undecided);
   const ClaimSpec rises{.id = "own", .compare = "crystalline_percent", .reaches = 5};
   const Table cycles = first_cycle_reached.decide(rises, {"rise", 1}, pointers(a), {}).entered;
   EXPECT_EQ(cycles.rows[0].at(3), TableCell(11.0));
@@ -428,6 +450,63 @@ TEST(PlannedLooks, WidenTheIntervalOfABound) {
   EXPECT_EQ(bound.ruling, Ruling::supported);
   EXPECT_EQ(bound.margin, 0.7);
   EXPECT_EQ(bound.level, look_level(std::vector<std::size_t>{3, 6}));
+}
+
+// The power is the probability that the looks decide about 0.6, not about 0.
+TEST(PlannedLooks, ThePowerOfABoundIsForThePublishedNumber) {
+  const auto power = [](double published) {
+    const ClaimSpec claim{
+        .id = "own",
+        .compare = "phi",
+        .cycles = {{1, 1}},
+        .between = {{{{"fluid", "still"}}, nlohmann::json::object()}},
+        .published = PublishedSpec{.label = "", .source = "a", .value = published},
+        .is = Relation::higher};
+    return claim_figure(claim).make(planned({1, 2, 3, 4}, 0.6, {5, 6})).verdicts.at(0).power;
+  };
+  EXPECT_LT(power(0.600015).value(), 0.5);
+  EXPECT_GT(power(0.5).value(), 0.99);
+}
+
+TEST(PlannedLooks, AClaimThatCannotBeDecidedHasTheNumbersOfTheLastLook) {
+  const ClaimSpec claim{.id = "own",
+                        .compare = "phi",
+                        .cycles = {{1, 1}},
+                        .between = {{{{"fluid", "still"}}, nlohmann::json::object()}},
+                        .published = PublishedSpec{.label = "", .source = "a", .value = 0.6},
+                        .margin = 0.001,
+                        .cannot_be_decided = "a reason"};
+  const Verdict all =
+      claim_figure(claim).make(planned({1, 2, 3, 4, 5, 6}, 0.6, {3, 6})).verdicts.at(0);
+  EXPECT_EQ(all.ruling, Ruling::undecidable);
+  EXPECT_EQ(all.look, 6U);
+  EXPECT_EQ(all.runs, 6U);
+}
+
+TEST(PlannedLooks, ThePowerOfASlopeCountsTheRunsOfAllVariants) {
+  const auto slopes = [](std::size_t variants) {
+    Frame frame;
+    frame.seeds = {1, 2, 3, 4, 5, 6};
+    frame.looks = {3, 6};
+    for (std::size_t k = 0; k < variants; ++k) {
+      for (const std::uint64_t seed : frame.seeds) {
+        const double grains = k % 2 == 0 ? 1000 : 2000;
+        FrameRun run = made_up_run("grains", grains, seed, 1, [](int, Measures&) {});
+        run.place.variant += std::to_string(k);
+        run.parameters["period_s"] = 1.0 + 0.01 * static_cast<double>(seed % 2);
+        (seed < 3 ? frame.runs : frame.pending).push_back(run);
+      }
+    }
+    const ClaimSpec claim{.id = "own",
+                          .compare = "period_s",
+                          .estimator = "slope",
+                          .against = "grains",
+                          .margin = 8e-6};
+    return claim_figure(claim).make(frame).verdicts.at(0);
+  };
+  const Verdict two = slopes(2), six = slopes(6);
+  ASSERT_TRUE(two.power && six.power) << two.note << "\n" << six.note;
+  EXPECT_GT(*six.power, *two.power);
 }
 
 TEST(PlannedLooks, WithoutThemThereIsOneAtAllSeeds) {

@@ -321,6 +321,30 @@ TEST(SpreadOfVariants, IsTheStandardDeviationOfTheirTrueMeans) {
   EXPECT_LT(verdict(0).estimate.value(), 0.7);
 }
 
+// Runs without a number could hide a spread: a verdict needs three quarters of each variant.
+TEST(SpreadOfVariants, IsUnknownIfRunsAreLeftOut) {
+  const ClaimSpec claim{.id = "own",
+                        .compare = "phi",
+                        .estimator = "spread_of_variants",
+                        .cycles = {{2, 2}},
+                        .margin = 0.1};
+  for (const std::size_t missing : {0, 1, 2}) {
+    std::vector<FrameRun> runs;
+    for (const char* fluid : {"still", "cell"}) {
+      for (std::uint64_t seed = 0; seed < 4; ++seed) {
+        const bool is_missing = fluid == std::string("cell") && seed < missing;
+        runs.push_back(made_up_run("fluid", fluid, seed, is_missing ? 1 : 2, [&](int, Measures& m) {
+          m.numbers["phi"] = 0.6 + 1e-3 * static_cast<double>(seed);
+        }));
+      }
+    }
+    const Verdict found = claim_figure(claim).make(runs).verdicts.at(0);
+    EXPECT_EQ(found.ruling, missing < 2 ? Ruling::agrees : Ruling::undecided) << found.note;
+    EXPECT_EQ(found.note.find("2 have no number") != found.note.npos, missing == 2) << found.note;
+    EXPECT_FALSE(found.runs_needed);
+  }
+}
+
 TEST(Csv, QuotingAndNumbers) {
   Table table;
   table.columns = {"a b", "c,d"};

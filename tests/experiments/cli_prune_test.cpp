@@ -438,6 +438,27 @@ TEST_F(Prune, OnlyCopiesOfMeasuresAreCoveredByTheLog) {
   expect(0, {"verify"}, {"nothing was changed\n"});
 }
 
+// The log vouches for the measures of pruned checkpoints, so wrong ones must not get there.
+TEST_F(Prune, RefusesMeasuresThatAreNotThoseOfTheFiles) {
+  start_again();
+  expect(0, {"table"});
+  forge_measures("shearcell-store", "scalars");
+  const std::size_t files = objects();
+  const Outcome refused =
+      expect(4, {"prune", "--last-too", "--yes"}, {"deletes the cached values of this checkpoint"});
+  EXPECT_EQ(objects(), files);
+  Arguments again = {"regenerate"};  // the remedy, for all checkpoints
+  const Store store(path("shearcell-store"), Access::read);
+  for (const Stage& stage : store.stages()) {
+    for (const CheckpointRecord& record : store.checkpoints(stage.id)) {
+      again.push_back(record.sha256);
+    }
+  }
+  expect(0, again);
+  expect(0, {"prune", "--last-too", "--yes"});
+  EXPECT_EQ(shown("shearcell-store"), shown_);
+}
+
 // Measures that a program caches of a checkpoint after it was pruned do not count.
 TEST_F(Prune, AMeasureThatTheLogDoesNotNameIsNotUsed) {
   start_again();
@@ -604,6 +625,16 @@ TEST_F(OtherBits, AreNamedByWhatContinuesThem) {
   EXPECT_EQ(objects(), 4U);
   expect(0, {"regenerate", "--all"}, {"the same bytes"});
   EXPECT_EQ(objects(), 6U);
+  // A lost file of other bits: the cycles after it cannot be made again, either.
+  fs::copy(path("shearcell-store"), path("lost"), fs::copy_options::recursive);
+  const Store store(path("lost"), Access::read);
+  for (const Stage& stage : store.stages()) {
+    for (const CheckpointRecord& record : store.checkpoints(stage.id)) {
+      if (record.cycle < 3) fs::remove(path("lost/" + record.file));
+    }
+  }
+  expect(0, {"prune", "--last-too", "--yes", "--store", "lost"}, {"6 checkpoints kept"});
+  EXPECT_EQ(objects("lost"), 2U);
   // Nor does a program say so of its own states.
   const Outcome more = expect(0, {"run", "m.yaml", "--cycles", "5", "-q"});
   EXPECT_FALSE(has(more.err, "bits_version")) << more.err;

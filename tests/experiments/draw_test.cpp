@@ -202,6 +202,27 @@ TEST_F(DrawFigure, AClaimIsDecidedWhenTheRunsOfAllSeedsHaveEnded) {
   EXPECT_EQ(decided.at("look"), 3);
   EXPECT_EQ(decided.at("looks"), (std::vector{3, 4}));
   EXPECT_EQ(claim(4).at("estimate"), decided.at("estimate")) << "the first verdict is final";
+  // A selection of seeds is not a planned look.
+  const WantedFigure own = wanted_figures(store_, {"own"}).figures.at(0);
+  RunSelection few;
+  few.seeds = {1, 2};
+  const Verdict part = draw("part", own, few).verdicts.at(0);
+  EXPECT_EQ(part.ruling, Ruling::undecided);
+  EXPECT_EQ(part.runs, 2U);
+  EXPECT_TRUE(has(part.note, "2 of 4 seeds")) << part.note;
+  few.seeds = {1, 2, 3};
+  EXPECT_EQ(draw("look", own, few).verdicts.at(0).ruling, Ruling::agrees);
+}
+
+// Figures that are computed in C++ have one look, at all runs.
+TEST_F(DrawFigure, AComputedFigureGivesNoVerdictBeforeAllRunsHaveEnded) {
+  const std::string manifest = tiny_manifest("S7", "seeds: 2\n");
+  for (const std::uint64_t seeds : {1, 2}) {
+    compute(store_, manifest, {.cycles = 1, .seeds = seeds});
+    const Verdict verdict = draw("own", "S7").verdicts.at(0);
+    EXPECT_EQ(has(verdict.note, "1 planned run has not ended, or is not selected"), seeds == 1)
+        << verdict.note;
+  }
 }
 
 // Two variants share a curve, which the label of neither names.

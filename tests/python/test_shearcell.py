@@ -731,7 +731,9 @@ class Package(unittest.TestCase):
                 ("VALUE = numpy.arange(NUMBER)", "VALUE.size"),
                 ("VALUE = re.compile('a' * NUMBER)", "len(VALUE.pattern)"),
                 ("@functools.lru_cache\ndef value(): return NUMBER", "value()"),
-                ("own_module.number = NUMBER", "own_module.value()")):
+                ("own_module.number = NUMBER", "own_module.value()"),
+                ("own_module.number = NUMBER\ndef value():\n  from own_module import value\n  return value()",
+                 "value()")):
             with self.subTest(text):
                 text += f"\ndef own(state): return {result}\n"
                 own = defined(text.replace("NUMBER", "1"))

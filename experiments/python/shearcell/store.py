@@ -6,6 +6,7 @@ import copyreg
 import dis
 import functools
 import hashlib
+import importlib
 import json
 import math
 import numbers
@@ -472,12 +473,13 @@ def _is_of_library(value: Any) -> bool:
 
 def _read_by(code: types.CodeType, scope: Mapping[str, Any]) -> list[Any]:
     """The values that the code, with the functions inside it, reads from its module and from other modules that are
-    not of a library."""
+    not of a library. Modules that the code imports count."""
     codes = [code]
     for each in codes:
         codes += [inner for inner in each.co_consts if isinstance(inner, types.CodeType)]
     steps = [step for each in codes for step in dis.get_instructions(each)]
     read = [scope.get(step.argval) for step in steps if step.opname in ("LOAD_GLOBAL", "LOAD_NAME")]
+    read += [_module(step.argval) for step in steps if step.opname == "IMPORT_NAME"]
     names = {name: None for each in codes for name in each.co_names}
     modules = []
     for each in read:
@@ -485,6 +487,13 @@ def _read_by(code: types.CodeType, scope: Mapping[str, Any]) -> list[Any]:
             modules.append(each)
             read += [vars(each)[name] for name in names if name in vars(each)]
     return read
+
+
+def _module(name: str) -> types.ModuleType | None:
+    try:
+        return importlib.import_module(name)
+    except Exception:  # the code may handle this, and a module may raise anything
+        return None
 
 
 def _texts(values: Any) -> list[str]:
