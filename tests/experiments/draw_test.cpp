@@ -216,10 +216,10 @@ TEST_F(DrawFigure, AClaimIsDecidedWhenTheRunsOfAllSeedsHaveEnded) {
 
 // Figures that are computed in C++ have one look, at all runs.
 TEST_F(DrawFigure, AComputedFigureGivesNoVerdictBeforeAllRunsHaveEnded) {
-  const std::string manifest = tiny_manifest("S7", "seeds: 2\n");
+  const std::string manifest = tiny_manifest("", "seeds: 2\n");
   for (const std::uint64_t seeds : {1, 2}) {
     compute(store_, manifest, {.cycles = 1, .seeds = seeds});
-    const Verdict verdict = draw("own", "S7").verdicts.at(0);
+    const Verdict verdict = draw("own", {*find_figure("S7"), "tiny"}).verdicts.at(0);
     EXPECT_EQ(has(verdict.note, "1 planned run has not ended, or is not selected"), seeds == 1)
         << verdict.note;
   }
