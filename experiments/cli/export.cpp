@@ -106,6 +106,12 @@ struct NothingToExport : UsageError {
   using UsageError::UsageError;
 };
 
+void say_pruned(const Stage& stage, std::size_t pruned) {
+  if (pruned == 0) return;
+  print_stderr("run {:.8}: left out: {} (pruned; `shearcell regenerate` recomputes them)\n",
+               stage.id, counted(pruned, "checkpoint"));
+}
+
 std::vector<CheckpointRecord> chosen(const Store& store, const PlacedRun& run,
                                      const std::string& cycles) {
   const Stage& stage = run.stage;
@@ -134,10 +140,7 @@ std::vector<CheckpointRecord> chosen(const Store& store, const PlacedRun& run,
                                : fmt::format("the run has checkpoints of cycles {} to {}",
                                              all.front().cycle, all.back().cycle)));
   }
-  if (pruned > 0) {
-    print_stderr("run {:.8}: left out: {} (pruned; `shearcell regenerate` recomputes them)\n",
-                 stage.id, counted(pruned, "checkpoint"));
-  }
+  say_pruned(stage, pruned);
   return records;
 }
 
@@ -180,6 +183,9 @@ std::vector<std::string> write_records(const Store& store, const PlacedRun& run,
                                        const ExportFormat& format, const ExportOptions& options,
                                        const fs::path& out, MeasureOutcome& unread) {
   if (format.writer == nullptr) {
+    const std::vector<CheckpointRecord> all = store.checkpoints(run.stage.id, Listed::and_pruned);
+    say_pruned(run.stage, static_cast<std::size_t>(std::ranges::count(all, CheckpointState::pruned,
+                                                                      &CheckpointRecord::state)));
     return write_ro_crate(store, crate_of(store, run.stage.id, options.licence), out);
   }
   const bool folder = is_folder(format);

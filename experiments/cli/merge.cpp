@@ -35,6 +35,12 @@ void merge(const std::vector<std::string>& sources, Context& context) {
     print_stderr("no measures were copied from {}: {}\n", finding.subject, finding.message);
     fail(context, finding.severity == Finding::Severity::error ? kStoreDamaged : kOtherError);
   }
+  for (const MergeReport& report : reports) {
+    if (report.absent == 0) continue;
+    warn(context,
+         fmt::format("{}: {} of pruned checkpoints {} missing", report.source,
+                     counted(report.absent, "measure"), report.absent == 1 ? "is" : "are"));
+  }
   const NewestRuns newest = newest_runs(select_runs(store, {}));
   for (const std::string& note : std::set(newest.notes.begin(), newest.notes.end())) {
     if (known.contains(note)) continue;

@@ -326,8 +326,10 @@ std::vector<MergeReport> merge_stores(Store& store,
   // The seed comes from the head of `store`. Someone who forges one of the `sources` does not know
   // this head, and so cannot predict which checkpoints are checked.
   const std::uint64_t seed = seed_of(store.head());
-  for (const std::filesystem::path& source : sources) {
+  for (std::size_t k = 0; k < sources.size(); ++k) {
+    const std::filesystem::path& source = sources[k];
     MeasureCheck check = check_measures(store, source, kSampled, seed);
+    reports[k].absent = check.absent;
     if (check.findings.empty()) {
       DerivedCache from(source, Access::read);
       const std::string why = copy_measures(store, from);

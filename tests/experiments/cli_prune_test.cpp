@@ -459,6 +459,16 @@ TEST_F(Prune, RefusesMeasuresThatAreNotThoseOfTheFiles) {
   EXPECT_EQ(shown("shearcell-store"), shown_);
 }
 
+TEST_F(Prune, WhatIsPrunedAndMissingIsCountedByMergeAndByTheCrate) {
+  start_again();
+  expect(0, {"prune", "--last-too", "--yes"});
+  expect(0, {"export", last_run(), "--to", "ro-crate", "--out", "crate"},
+         {"left out: ", "pruned; `shearcell regenerate` recomputes them"});
+  fs::remove(path("shearcell-store/derived.sqlite"));
+  expect(0, {"merge", "shearcell-store", "--store", "into"},
+         {"measures of pruned checkpoints are missing"});
+}
+
 // Measures that a program caches of a checkpoint after it was pruned do not count.
 TEST_F(Prune, AMeasureThatTheLogDoesNotNameIsNotUsed) {
   start_again();
