@@ -6,6 +6,7 @@
 
 #include "experiments/cli/command.hpp"
 #include "experiments/runner/audit.hpp"
+#include "provenance/words.hpp"
 
 namespace shearcell::cli {
 namespace {
