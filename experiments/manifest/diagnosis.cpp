@@ -576,7 +576,7 @@ std::vector<std::pair<string, const Placed<Spec>*>> stated_in(
 /// Reports each entry of `primary` that is neither the id of a claim nor, as in older manifests,
 /// the statement of a claim. Claims of all scales count. An id can have the ending `@VALUE`, where
 /// VALUE is a value of `for_each`. VALUE is not checked if the claim belongs to a computed figure
-/// or uses runs of other experiments (`of`), because VALUE then does not follow from this manifest.
+/// or uses runs of other experiments (`of`): this manifest does not tell which values are possible.
 void check_primary(const Manifest& manifest, const std::vector<Scale>& scales,
                    ProblemList& problems) {
   std::set<string> ids, unchecked, statements;
