@@ -75,10 +75,10 @@ Verdict decide_waits(const ClaimSpec& claim, const Claim& stated, RunGroup first
              estimate, runs, std::move(note), std::move(entered), Counted::runs_per_variant);
   verdict.waits_for = event;
   if (estimate && estimate->interval.low == estimate->interval.high) {
-    add_note(verdict.note,
-             "no verdict, because the interval has no width: the checkpoints are too far apart to "
-             "show the scatter of the waiting times");
-    withhold(verdict);
+    add_note(
+        verdict.note,
+        "the waiting times have no scatter at these checkpoints, so the interval has no width");
+    if (estimate->value == 0) withhold(verdict);  // as compare() does for equal sides
   }
   return verdict;
 }

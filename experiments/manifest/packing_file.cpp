@@ -705,6 +705,7 @@ class PackingReader {
   /// Decides which columns are read. The names of other columns go to not_read_.
   std::vector<Use> interpret(const GrainTable& table) {
     constexpr std::size_t most = 1000;
+    static const std::regex of_box("(.*[^a-z])?(box|tilt|units?)([^a-z].*)?|l_?[xyz]");
     if (table.columns.size() > most) {
       refuse_line(table.header, fmt::format("has {} columns", table.columns.size()),
                   fmt::format("At most {} columns can be read. Leave out some columns.", most));
@@ -727,7 +728,8 @@ class PackingReader {
       const auto other = std::ranges::find(uses, meaning.first, &Use::quantity);
       if (meaning.first == kQuantities || (other != uses.end() && other->rank < meaning.rank)) {
         if (column.name.empty()) leave(fmt::format("column {}", field + 1));
-        leave_or_refuse(column.name);
+        if (std::regex_match(lower(column.name.substr(0, 64)), of_box)) refuse_form(column.name);
+        leave(column.name);
         continue;
       }
       if (meaning.rank == Meaning::probable && meaning.first != kDiameter) {

@@ -358,8 +358,9 @@ TEST(CompareWaits, CountsRunsThatEndBefore) {
   EXPECT_EQ(
       verdict.note,
       "still fluid: median cycle 16 (1 of 4 runs end before the event); second: median cycle 16 "
-      "(0 of 4 runs end before the event); no verdict, because the interval has no width: the "
-      "checkpoints are too far apart to show the scatter of the waiting times");
+      "(0 of 4 runs end before the event); the waiting times have no scatter at these checkpoints, "
+      "so "
+      "the interval has no width");
   EXPECT_EQ(verdict.ruling, Ruling::undecided);
   const ClaimSpec rises{.id = "own", .compare = "crystalline_percent", .reaches = 5};
   const Table cycles = first_cycle_reached.decide(rises, {"rise", 1}, pointers(a), {}).entered;
