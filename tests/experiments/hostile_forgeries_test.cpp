@@ -122,7 +122,7 @@ std::vector<Case> forged_states() {
                }),
                "199"),
       reported("measures", "verify", 4, measures("scalars", [](json& m) { m["phi"] = 0.719; }),
-               "derived.sqlite", "phi", "figures"),
+               "derived.sqlite", "phi", "regenerate"),
       reported("measures_not_finite", "verify", 4,
                measures("scalars", [](json& m) { m["phi"] = std::nan(""); }), "derived.sqlite"),
       reported("measures_of_another_kind", "verify", 4,

@@ -179,7 +179,7 @@ std::vector<Case> damaged_tables() {
       reported("measures_in_a_folder", "figures S2", 0, at("derived.sqlite", folder_instead),
                "measures cannot be cached"),
       reported("measures_through_a_link", "figures S2", 0, at("derived.sqlite", link_instead),
-               "measures cannot be cached", "remove it"),
+               "measures cannot be cached", "move it to another place"),
   };
 }
 
