@@ -112,6 +112,19 @@ TEST_F(EngineRun, FailsWhereTheWatchdogRefusesAFrame) {
   EXPECT_EQ(run_of("engine=lammps")["state"], "failed");
 }
 
+// The planned runs name no engine; if only LAMMPS computes them, its runs are the planned ones.
+TEST_F(EngineRun, GivesTheVerdictOfACampaignOfLammpsAlone) {
+  if (!lammps()) GTEST_SKIP() << "needs LAMMPS (Debian package lammps)";
+  write("m.yaml", tiny_manifest("",
+                                "seeds: 3\nclaims: [{id: own.phi, compare: phi, at_cycle: 1, "
+                                "of: {fluid: still}, margin: 0.1, "
+                                "published: {value: 0.63, source: a guess}}]\n"));
+  expect(0, {"run", "m.yaml", "--engine", "lammps", "-q", "--seeds", "2"});
+  expect(0, {"figures", "own"}, {"undecided: own.phi"});
+  expect(0, {"run", "m.yaml", "--engine", "lammps", "-q"});
+  expect(0, {"figures", "own"}, {"agrees: own.phi"});
+}
+
 TEST_F(EngineRun, EndsByUntil) {
   if (!lammps()) GTEST_SKIP() << "needs LAMMPS (Debian package lammps)";
   write("m.yaml", tiny_manifest("  cycles: 4\n", "until: {phi: 0.1, extra_cycles: 1}\n"));
