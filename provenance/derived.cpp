@@ -97,7 +97,11 @@ void DerivedCache::open() {
                   ": this database belongs to another program; move it to another "
                   "place");
   }
-  if (database.integer("PRAGMA user_version") != kLayout) {
+  const std::int64_t layout = database.integer("PRAGMA user_version");
+  if (layout > kLayout) {
+    throw NotOurs(file_.string() + ": a newer version of this program made this cache of measures");
+  }
+  if (layout != kLayout) {
     throw StoreDamaged(file_.string() + ": the database has an unknown layout version");
   }
   // Another program may have added a trigger. SQLite would run the trigger at every insert.

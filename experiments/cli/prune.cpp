@@ -16,6 +16,7 @@
 #include "experiments/cli/command.hpp"
 #include "experiments/figures/keep_measures.hpp"
 #include "experiments/runner/audit.hpp"
+#include "experiments/runner/measure.hpp"
 #include "experiments/runner/stage.hpp"
 #include "experiments/runner/stop.hpp"
 #include "provenance/derived.hpp"
@@ -248,13 +249,16 @@ void regenerate(const RegenerateOptions& options, Context& context) {
   nlohmann::json list = nlohmann::json::array();
   RunLineages known;
   DerivedCache measures(store.folder());
+  MeasureSources sources(store);
   for (const CheckpointRecord& record : records) {
     if (stop_requested()) {
       fail(context, kInterrupted);
       break;
     }
+    sources.read_run(record.run);
+    const bool altered = !sources.compare_pruned(record, measures).altered.empty();
     list.push_back(regenerate_one(store, record, options.threads, known, context));
-    if (named && store.load_if_readable(record)) measures.forget(record.sha256);
+    if ((named || altered) && store.load_if_readable(record)) measures.forget(record.sha256);
   }
   if (context.json) print_json({{"checkpoints", list}});
 }
@@ -327,8 +331,8 @@ void add_regenerate(CLI::App& app, Context& context) {
       R"(Recomputes each state from the nearest earlier checkpoint that has a file. If there is no such
 checkpoint in the stage, also recomputes the file of the initial state. If a state or a file does
 not have the recorded hash, no file is written, ReplayDiverged is recorded, and the exit code is 4.
-Also deletes the cached measures of checkpoints that are given by their hashes. The next command that
-needs these measures computes them again.
+Also deletes the cached measures of checkpoints that are given by their hashes, and measures that do
+not have the digests in the log. The next command that needs these measures computes them again.
 Examples:
   shearcell regenerate 2a2c47ca
   shearcell regenerate --experiment drag --scale desk

@@ -133,6 +133,14 @@ TEST_F(DerivedCacheTest, MayBeDeletedWhileInUse) {
   EXPECT_EQ(get(key(2)), bytes_of("content"));
 }
 
+TEST_F(DerivedCacheTest, KeepsTheFileOfANewerVersion) {
+  put(key(1), "content");
+  sqlite::Database(file(), Access::write).execute("PRAGMA user_version = 9");
+  DerivedCache cache(file().parent_path());
+  EXPECT_TRUE(has(cache.trouble(), "a newer version of this program"));
+  EXPECT_FALSE(std::filesystem::exists(file().string() + ".damaged-1"));
+}
+
 TEST_F(DerivedCacheTest, TouchesNoForeignFile) {
   const std::string elsewhere = (folder_.path() / "elsewhere").string();
   write_bytes(elsewhere, "mine");
