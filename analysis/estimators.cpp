@@ -49,7 +49,7 @@ struct Values {
       not_positive += value.missing == Missing::nothing ? 1 : 0;
     }
     runs += group.size();
-    enough = enough && 4 * without <= group.size();
+    enough = enough && is_enough(group.size() - without, group.size());
   }
   std::vector<CensoredValue> over_packings(RunGroup group) const {
     std::vector<CensoredValue> values;
@@ -81,7 +81,7 @@ Verdict conclude(const Claim& claim, const std::string& quantity, std::optional<
   if (values.runs == 0) {
     note = no_group;
   } else if (!values.enough) {
-    add_note(note, "more than a quarter of the runs are left out");
+    add_note(note, many_left_out);
     estimate.reset();
   } else if (runs < least_runs) {
     add_note(note, fmt::format("too few runs: {}; at least {} are needed", runs, least_runs));
@@ -121,7 +121,7 @@ Pairs paired(RunGroup a, RunGroup b, const Values& values) {
     pairs.a.push_back(x.front());
     pairs.b.push_back(y.front());
   }
-  pairs.enough = 4 * pairs.a.size() >= 3 * std::max(first.size(), second.size());
+  pairs.enough = is_enough(pairs.a.size(), std::max(first.size(), second.size()));
   return pairs;
 }
 
@@ -230,18 +230,19 @@ std::vector<CensoredValue> over_packings(RunGroup runs, std::span<const Censored
   return means;
 }
 
-std::vector<double> NumbersOfRuns::take(const Scalar& scalar, RunGroup group) {
-  std::vector<double> numbers;
-  std::size_t without = 0;
+std::vector<RunValue> NumbersOfRuns::take(const Scalar& scalar, RunGroup group) {
+  std::vector<RunValue> numbers;
+  std::size_t with = 0;
   for (const FrameRun* run : group) {
-    const RunValue value = scalar.of(*run);
-    numbers.push_back(value.or_nan());
-    if (value.missing == Missing::nothing) continue;
-    ++without;
-    ++(censored_value(value).censored ? censored : missing);
+    const RunValue& value = numbers.emplace_back(scalar.of(*run));
+    if (value.missing == Missing::nothing) {
+      ++with;
+    } else {
+      ++(censored_value(value).censored ? censored : missing);
+    }
   }
   runs += group.size();
-  enough = enough && censored == 0 && 4 * without <= group.size();
+  enough = enough && censored == 0 && is_enough(with, group.size());
   return numbers;
 }
 

@@ -87,15 +87,22 @@ CensoredValue censored_value(const RunValue& value);
 /// averaged values is censored. Values that are not finite are left out.
 std::vector<CensoredValue> over_packings(RunGroup runs, std::span<const CensoredValue> values);
 
-/// For an estimator that needs a number from every run: counts the runs without a number. The runs
-/// that are left out could bias the verdict, so none of them may be censored, and in each group at
-/// least three quarters of the runs must have a number. [choice]
+/// Whether at least three quarters of `all` runs, or packings, are used. The others could bias a
+/// verdict. [choice]
+constexpr bool is_enough(std::size_t used, std::size_t all) {
+  return 4 * used >= 3 * all;
+}
+/// The note of a verdict without is_enough().
+inline constexpr const char* many_left_out = "more than a quarter of the runs are left out";
+
+/// For an estimator that needs a number from every run: counts the runs without a number. No run
+/// may be censored, and each group must have is_enough() numbers.
 struct NumbersOfRuns {
   std::size_t runs = 0, censored = 0, missing = 0;
   bool enough = true;
 
-  /// The number of each run of the group; NaN if the run has none.
-  std::vector<double> take(const Scalar& scalar, RunGroup group);
+  /// The number of each run of the group.
+  std::vector<RunValue> take(const Scalar& scalar, RunGroup group);
   /// Why the estimator cannot be used, for the verdict's note; "" if `enough` is true.
   std::string why_not() const;
 };

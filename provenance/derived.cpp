@@ -99,7 +99,9 @@ void DerivedCache::open() {
   }
   const std::int64_t layout = database.integer("PRAGMA user_version");
   if (layout > kLayout) {
-    throw NotOurs(file_.string() + ": a newer version of this program made this cache of measures");
+    throw NotOurs(file_.string() +
+                  ": a newer version of this program made this cache of measures; "
+                  "use that version, or move the file to another place");
   }
   if (layout != kLayout) {
     throw StoreDamaged(file_.string() + ": the database has an unknown layout version");

@@ -51,7 +51,7 @@ Verdict decide_pooled(const ClaimSpec& claim, const Claim& stated, RunGroup a, R
     }
   }
   double weights = 0, sum = 0, variance = 0, fourth = 0;
-  std::size_t pooled = 0, censored = 0, all = 0, left_out = 0, runs[2] = {0, 0};
+  std::size_t pooled = 0, censored = 0, all = 0, used = 0, runs[2] = {0, 0};
   for (const auto& [stratum, both] : strata) {
     std::vector<CensoredValue> values[2];
     std::optional<Estimate> mean[2];
@@ -63,8 +63,8 @@ Verdict decide_pooled(const ClaimSpec& claim, const Claim& stated, RunGroup a, R
     const bool usable = mean[0] && mean[1] && std::isfinite(mean[0]->spread + mean[1]->spread);
     for (const auto& [of_side, numbers] : both) {
       all += numbers.size();
-      left_out += static_cast<std::size_t>(std::ranges::count_if(
-          numbers, [&](const CensoredValue& v) { return !usable || !std::isfinite(v.value); }));
+      used += static_cast<std::size_t>(std::ranges::count_if(
+          numbers, [&](const CensoredValue& v) { return usable && std::isfinite(v.value); }));
     }
     if (!usable) continue;
     ++pooled;
@@ -83,7 +83,7 @@ Verdict decide_pooled(const ClaimSpec& claim, const Claim& stated, RunGroup a, R
     }
   }
   std::optional<Estimate> estimate;
-  if (variance > 0 && 4 * left_out <= all) {
+  if (variance > 0 && is_enough(used, all)) {
     const double value = sum / weights,
                  t = student_quantile((1 + stated.level) / 2, variance * variance / fourth);
     const double half = t * std::sqrt(variance) / weights;
@@ -96,7 +96,7 @@ Verdict decide_pooled(const ClaimSpec& claim, const Claim& stated, RunGroup a, R
         "{} and {} runs on the two sides, from {} of {}; the runs of a group differ only in the "
         "compared parameter and the seed, and each side of a group needs at least {} values",
         runs[0], runs[1], pooled, counted(strata.size(), "group"), least_runs);
-    if (4 * left_out > all) add_note(note, "more than a quarter of the runs are left out");
+    if (!is_enough(used, all)) add_note(note, many_left_out);
   }
   Verdict verdict =
       decide(stated, "pooled difference in " + number.name, estimate, std::min(runs[0], runs[1]),

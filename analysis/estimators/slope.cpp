@@ -38,8 +38,8 @@ Verdict decide_slope(const ClaimSpec& claim, const Claim& stated, RunGroup runs,
   }
   std::string note = fmt::format("{} of {} runs in {} have a value", values.size() - censored,
                                  runs.size(), counted(variants.size(), "variant"));
-  const bool enough = 4 * values.size() >= 3 * runs.size();
-  if (!enough) add_note(note, "more than a quarter of the runs are left out");
+  const bool enough = is_enough(values.size(), runs.size());
+  if (!enough) add_note(note, many_left_out);
   std::optional<Estimate> estimate;
   if (variants.size() > 1 && enough) estimate = censored_slope(values, at, stated.level);
   Verdict verdict = decide(stated, words_of_slope(claim), estimate, values.size(), std::move(note),

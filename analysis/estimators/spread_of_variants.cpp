@@ -25,11 +25,13 @@ Verdict decide_spread(const ClaimSpec& claim, const Claim& stated, RunGroup runs
   NumbersOfRuns numbers;
   Table entered = entered_with({"value", "missing"});
   for (const auto& [variant, members] : variants) {
-    for (const FrameRun* run : members) {
-      const RunValue value = number.of(*run);
-      enter(*run, {value.or_nan(), std::string(name_of(value.missing))}, entered);
+    const std::vector<RunValue> found = numbers.take(number, members);
+    std::vector<double> values;
+    for (std::size_t k = 0; k < members.size(); ++k) {
+      values.push_back(found[k].or_nan());
+      enter(*members[k], {values[k], std::string(name_of(found[k].missing))}, entered);
     }
-    std::vector<double> values = over_packings(members, numbers.take(number, members));
+    values = over_packings(members, values);
     with_number += values.size();
     if (!values.empty()) groups.push_back(std::move(values));
   }

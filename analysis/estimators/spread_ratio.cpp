@@ -29,11 +29,12 @@ Verdict decide_ratio(const ClaimSpec& claim, const Claim& stated, RunGroup runs,
   const Scalar first = number_of_the_run.scalar(claim), second = number_of_the_run.scalar(other);
   Table entered = entered_with({"value", "other"});
   NumbersOfRuns numbers;
-  const std::vector<double> xs = numbers.take(first, runs), ys = numbers.take(second, runs);
+  const std::vector<RunValue> xs = numbers.take(first, runs), ys = numbers.take(second, runs);
   std::map<std::string, std::vector<std::pair<double, double>>> variants;
   for (std::size_t k = 0; k < runs.size(); ++k) {
-    enter(*runs[k], {xs[k], ys[k]}, entered);
-    if (std::isfinite(xs[k] + ys[k])) variants[runs[k]->place.variant].emplace_back(xs[k], ys[k]);
+    const double x = xs[k].or_nan(), y = ys[k].or_nan();
+    enter(*runs[k], {x, y}, entered);
+    if (std::isfinite(x) && std::isfinite(y)) variants[runs[k]->place.variant].emplace_back(x, y);
   }
   double n = 0, xx = 0, yy = 0, xy = 0;
   for (const auto& [variant, pairs] : variants) {

@@ -147,12 +147,13 @@ void name_variants(const std::vector<VariantLabel>& labels, const std::string& e
 }
 
 /// Adds to Frame::seeds the seeds of the manifest, and to Frame::pending the planned runs that are
-/// not among the collected runs. If all runs were added by `run --engine`, they count as the
-/// planned runs. Sets Frame::looks, unless the figure combines experiments: their looks may differ.
-/// Does nothing if the sweep has more variants than ManifestLimits::runs.
+/// not among the collected runs. If all runs of the experiment were added by `run --engine`, they
+/// count as the planned runs. Sets Frame::looks, unless the figure combines experiments: their
+/// looks may differ. Does nothing if the sweep has more variants than ManifestLimits::runs.
 void add_planned(const RegisteredManifest& manifest, bool combined, CollectedRuns& collected) {
-  const auto of_engine = [](const FrameRun& run) { return run.place.swept.contains("engine"); };
-  const bool all_of_engine = std::ranges::all_of(collected.runs, of_engine);
+  const bool all_of_engine = std::ranges::all_of(collected.runs, [&](const FrameRun& run) {
+    return run.place.experiment != manifest.experiment || run.place.swept.contains("engine");
+  });
   std::set<std::pair<std::uint64_t, nlohmann::json>> declared;
   for (const FrameRun& run : collected.runs) {
     if (run.place.experiment != manifest.experiment) continue;

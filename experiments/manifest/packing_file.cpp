@@ -163,9 +163,8 @@ Meaning meaning_of(const Column& column, bool units) {
       "(?!.*(ang|rot|omega|spin|vir|vor))"
       "(" +
       before + "(v|mom|speed)[ _]?[xyz0-9]?|v(cm|el|lin|avg)?[xyz]u?|[xyz](v|vel|dot)" + after +
-      "|[pu][ "
-      "_]?([xyz]|[:.\\[(][0-3xyz][\\])]?)|d([xyzr]|pos)/?dt|(.*[^a-z])?(vel.*|v[xyz]([^a-z].*)?)|"
-      ".*(veloc|momenta|momentum).*)");
+      "|[pu][ _]?([xyz]|[:.\\[(][0-3xyz][\\])]?)|d([xyzr]|pos)/?dt|"
+      "(.*[^a-z])?(vel.*|v[xyz]([^a-z].*)?)|.*(veloc|momenta|momentum).*)");
   static const std::regex position(
       before + "(pos|positions?|coords?|coordinates?|points?)[ _]?[xyz0-9]?|[xyz](su?|pos|coord)" +
       after);
@@ -705,6 +704,7 @@ class PackingReader {
   /// Decides which columns are read. The names of other columns go to not_read_.
   std::vector<Use> interpret(const GrainTable& table) {
     constexpr std::size_t most = 1000;
+    // Narrower than concerns_grains(): a column `lattice` may be a measure of each grain.
     static const std::regex of_box("(.*[^a-z])?(box|tilt|units?)([^a-z].*)?|l_?[xyz]");
     if (table.columns.size() > most) {
       refuse_line(table.header, fmt::format("has {} columns", table.columns.size()),
