@@ -38,7 +38,7 @@ const Measure* find_curve(std::string_view name) {
 enum class Against { cycle, phi, measure, number_of_run, curve };
 
 Against against(const PlotSpec& plot) {
-  if (find_curve(plot.y) != nullptr) return Against::curve;
+  if (find_curve(plot.y()) != nullptr) return Against::curve;
   if (is_of_run(plot.x)) return Against::number_of_run;
   return plot.x == "cycle" ? Against::cycle : plot.x == "phi" ? Against::phi : Against::measure;
 }
@@ -74,7 +74,7 @@ PlotRuns selected_by(const PlotSpec& plot, std::span<const FrameRun> runs) {
   if (!plot.minus.empty()) selection.subtracted = runs_with(plot.minus, runs);
   const PackingGroups packings = by_packing(selection.subtracted);
   const std::set<std::string_view> subtracted = stage_ids(selection.subtracted);
-  const NumberColumn y(plot.y);
+  const NumberColumn y(plot.y());
   for (const FrameRun* run : all_runs_with(of_runs, runs)) {
     if (subtracted.contains(run->stage.id)) continue;
     const auto same = packings.find(packing_of(*run));
@@ -93,7 +93,7 @@ PlotRuns selected_by(const PlotSpec& plot, std::span<const FrameRun> runs) {
     for (const CheckpointMeasures& checkpoint : run->checkpoints) {
       const bool wanted =
           !plot.where.contains("cycle") || is_within(checkpoint.cycle, plot.where.at("cycle"));
-      const bool alone = !plot.minus.empty() && !is_of_run(plot.y) && !has_partner(checkpoint);
+      const bool alone = !plot.minus.empty() && !is_of_run(plot.y()) && !has_partner(checkpoint);
       if (wanted && !alone) one.checkpoints.push_back(&checkpoint);
     }
   }
@@ -186,12 +186,6 @@ struct Panel {
   std::vector<Curve> curves = {};
 };
 
-std::vector<ColumnSpec> measures_of(const PlotSpec& plot) {
-  std::vector<ColumnSpec> all = {{plot.y, plot.column}};
-  all.insert(all.end(), plot.also.begin(), plot.also.end());
-  return all;
-}
-
 /// Computes the samples of a run. `cycle` (from cycle_of()) is used if the plot draws one cycle.
 void evaluate(const PlotSpec& plot, std::span<const NumberColumn> columns, const NumberColumn& x,
               double cycle, Trace& trace) {
@@ -206,7 +200,7 @@ void evaluate(const PlotSpec& plot, std::span<const NumberColumn> columns, const
       sample.y.push_back(is_y ? value_of(column, trace, checkpoint) : column(*trace.run, row));
     }
   };
-  for (const ColumnSpec& column : measures_of(plot)) {
+  for (const ColumnSpec& column : plot.columns) {
     const Measure* measure = find_measure(column.measure, MeasureKind::run);
     const RunValue value = measure == nullptr ? RunValue{} : measure->of_run(*trace.run);
     if (trace.above.empty()) trace.missing = value.missing;
@@ -215,7 +209,7 @@ void evaluate(const PlotSpec& plot, std::span<const NumberColumn> columns, const
   switch (against(plot)) {
     case Against::curve:
       if (chosen == nullptr) break;
-      if (const auto found = chosen->measures.curves.find(plot.y);
+      if (const auto found = chosen->measures.curves.find(plot.y());
           found != chosen->measures.curves.end()) {
         const auto& [xs, ys] = found->second;
         for (std::size_t i = 0; i < xs.size(); ++i) {
@@ -224,8 +218,8 @@ void evaluate(const PlotSpec& plot, std::span<const NumberColumn> columns, const
       }
       break;
     case Against::number_of_run:
-      if (is_of_run(plot.y)) chosen = nullptr;
-      if (is_of_run(plot.y) || chosen != nullptr) add(cycle, x(*trace.run), chosen);
+      if (is_of_run(plot.y())) chosen = nullptr;
+      if (is_of_run(plot.y()) || chosen != nullptr) add(cycle, x(*trace.run), chosen);
       break;
     default:
       for (const CheckpointMeasures* checkpoint : trace.checkpoints) {
@@ -363,8 +357,7 @@ void apply(const SeriesSpec& stated, const PlotSpec& plot, bool named, Curve& cu
 void set_curves(const Looks& looks, const NameVariants& names, Panel& panel) {
   const PlotSpec& plot = panel.plot;
   std::vector<NumberColumn> columns;
-  if (against(plot) != Against::curve) columns.emplace_back(plot.y);
-  for (const ColumnSpec& one : plot.also) columns.emplace_back(one.measure);
+  for (const ColumnSpec& one : plot.columns) columns.emplace_back(one.measure);
   const NumberColumn x(plot.x);
   panel.curves = curves_of(plot, panel.selected);
   set_titles(plot, names, panel.curves);
@@ -432,8 +425,7 @@ MeasureColumn column_for(const std::string& text, const std::string& name = {}) 
 
 std::vector<MeasureColumn> columns_of(const PlotSpec& plot) {
   std::vector<MeasureColumn> columns;
-  for (const auto& [measure, name] : measures_of(plot))
-    columns.push_back(column_for(measure, name));
+  for (const auto& [measure, name] : plot.columns) columns.push_back(column_for(measure, name));
   if (!plot.minus.empty()) columns[0].name += "_difference";
   columns[0].rms = plot.show == Show::rms;
   return columns;
@@ -582,7 +574,7 @@ void adapt(Axis& axis, const std::string& label, bool log) {
 }
 
 Axis x_axis(const PlotSpec& plot, std::span<const Selected> runs) {
-  if (const Measure* y = find_curve(plot.y)) return named_axis(y->x, y->x_unit);
+  if (const Measure* y = find_curve(plot.y())) return named_axis(y->x, y->x_unit);
   if (!plot.x_symbol.empty()) {
     return {.symbol = formula("$" + plot.x_symbol + "$"),
             .unit = plot.x_unit.empty() ? Text() : Text(plot.x_unit)};
@@ -704,17 +696,17 @@ std::vector<BinColumn> bin_columns(const Panel& panel, std::span<const MeasureCo
   } else if (draws_every_cycle(plot)) {
     add("cycle", [](const Bin& bin) { return static_cast<std::int64_t>(bin.at); });
   } else {
-    const Measure* curve = find_curve(plot.y);
+    const Measure* curve = find_curve(plot.y());
     add(curve != nullptr ? std::string(curve->x) : plot.x, [](const Bin& bin) { return bin.at; });
   }
   for (std::size_t k = 0; k < columns.size(); ++k) {
     add_means(columns[k], [k](const Bin& bin) { return bin.y[k]; });
   }
   if (what == Against::measure) add_means(column_for(plot.x), x_of);
-  for (std::size_t k = 0; k <= plot.drawn; ++k) {
+  for (std::size_t k = 0; k < plot.drawn; ++k) {
     add(k == 0 ? "runs" : columns[k].name + "_runs", [k](const Bin& bin) { return bin.y[k].runs; });
   }
-  if (what == Against::number_of_run && find_measure(plot.y, MeasureKind::run) != nullptr) {
+  if (what == Against::number_of_run && find_measure(plot.y(), MeasureKind::run) != nullptr) {
     const std::pair<const char*, Missing> reasons[] = {{"runs_ended_before", Missing::too_short},
                                                        {"runs_began_after", Missing::too_late},
                                                        {"runs_unclear", Missing::undefined}};
@@ -725,7 +717,7 @@ std::vector<BinColumn> bin_columns(const Panel& panel, std::span<const MeasureCo
       });
     }
   }
-  if (what == Against::curve || (what == Against::number_of_run && !is_of_run(plot.y))) {
+  if (what == Against::curve || (what == Against::number_of_run && !is_of_run(plot.y()))) {
     add("cycle", [cycle = panel.cycle](const Bin&) { return cycle; });
   }
   return all;
@@ -739,7 +731,7 @@ Table table_of_runs(const Panel& panel) {
   const bool x = plot.x != "cycle";
   if (x) table.columns.emplace_back("cycle");
   table.columns.emplace_back(plot.x);
-  table.columns.emplace_back(plot.y + (plot.minus.empty() ? "" : "_difference"));
+  table.columns.emplace_back(plot.y() + (plot.minus.empty() ? "" : "_difference"));
   for (const Curve& curve : panel.curves) {
     for (const Trace& trace : curve.traces) {
       for (const Sample& sample : trace.samples) {
@@ -755,7 +747,7 @@ Table table_of_runs(const Panel& panel) {
 
 /// A sentence for the caption: the cycle that is drawn, or how many runs have no value.
 std::string note_of(const Panel& panel, std::size_t with_value) {
-  if (!is_of_run(panel.plot.y)) {
+  if (!is_of_run(panel.plot.y())) {
     if (!std::isfinite(panel.cycle)) return "";
     return fmt::format("At {} {}{}", word_for_cycle(panel.selected), panel.cycle,
                        panel.plot.cycle ? "" : ", the last one that all runs have recorded");
@@ -770,7 +762,7 @@ std::string note_of(const Panel& panel, std::size_t with_value) {
   if (censored > 0) {
     add_note(note,
              fmt::format("{} of {} runs end before {}; the means use their censored values",
-                         censored, runs, find_measure(panel.plot.y, MeasureKind::run)->reach));
+                         censored, runs, find_measure(panel.plot.y(), MeasureKind::run)->reach));
   }
   if (const std::size_t without = runs - with_value - censored; without > 0) {
     add_note(note, fmt::format("{} of {} runs have no value and are left out of the means", without,
@@ -792,7 +784,7 @@ void require_different_titles(std::span<const Curve> curves) {
 
 /// Sets title and style of the series for column k of a curve. `alone`: the panel has one curve.
 void name_y(const PlotSpec& plot, std::size_t k, bool alone, Series& series) {
-  const auto [measure, name] = measures_of(plot)[k];
+  const auto& [measure, name] = plot.columns[k];
   // In a panel with one curve, the columns differ in colour and symbol. In a panel with several
   // curves, the columns of one curve differ only in symbol.
   if (alone) {
@@ -855,14 +847,14 @@ Table draw(const Panel& panel) {
     // If x has one value per run, different points come from different runs, and Series::runs
     // stays 0.
     if (what != Against::number_of_run) series.runs = by_packing(runs_of(curve.traces)).size();
-    for (std::size_t k = 0; k <= plot.drawn; ++k) {
+    for (std::size_t k = 0; k < plot.drawn; ++k) {
       Series& drawn = table.chart.series.emplace_back(series);
       drawn.points = mean_points(what, bins, k);
       if (k == 0 && what == Against::cycle && !bins.empty() &&
           follow_runs(curve, bins.back().at, columns[0].rms, drawn, single)) {
         table.chart.note = "Thin lines: single runs, after the shortest run of the curve has ended";
       }
-      if (plot.drawn == 0) continue;
+      if (plot.drawn == 1) continue;
       name_y(plot, k, panel.curves.size() == 1, drawn);
       if (what == Against::number_of_run && !bins.empty()) {
         drawn.shift = static_cast<double>(k) * (bins.back().at - bins.front().at) / 60;
@@ -873,7 +865,7 @@ Table draw(const Panel& panel) {
   if (plot.mark) add_mark(panel, table);
   if (draws_every_cycle(plot)) return table;
   if (draws_runs(plot)) table.chart.series = series_of_runs(panel);
-  if (panel.curves.size() == 1 && plot.drawn == 0) {
+  if (panel.curves.size() == 1 && plot.drawn == 1) {
     for (Series& series : table.chart.series) series.title = {};
   }
   table.chart.note = note_of(panel, with_value);
@@ -990,7 +982,7 @@ FigureResult make_plot(const PlotSpec& plot, const Frame& frame, const NameVaria
     set_curves(looks, names, panel);
     Table& table = result.tables.emplace_back(draw(panel));
     table.chart.x = x_axis(plot, panel.selected);
-    table.chart.y = axis_of(plot.y);
+    table.chart.y = axis_of(plot.y());
     if (!plot.minus.empty()) table.chart.y.name = Text("difference in ") + table.chart.y.name;
     if (plot.show == Show::rms) table.chart.y.name = Text("rms ") + table.chart.y.name;
     if (!less.empty()) add_note(table.chart.note, less, ". ");
@@ -1084,22 +1076,21 @@ std::string problem_of_minus(const PlotSpec& plot, std::size_t variants) {
 }
 
 bool draws_every_cycle(const PlotSpec& plot) {
-  return find_curve(plot.y) == nullptr && !is_of_run(plot.x);
+  return find_curve(plot.y()) == nullptr && !is_of_run(plot.x);
 }
 
 Figure plot_figure(const PlotSpec& plot, const NameVariants& names, const Plots& others) {
-  const Measure* measured = find_curve(plot.y);
+  const Measure* measured = find_curve(plot.y());
   const std::string x(measured == nullptr ? plot.x : measured->x);
-  Figure figure{plot.name, plot.y + " against " + x, [plot, names, others](const Frame& frame) {
+  Figure figure{plot.name, plot.y() + " against " + x, [plot, names, others](const Frame& frame) {
                   return make_plot(plot, frame, names, others);
                 }};
   for (const SeriesSpec& one : plot.series) {
     for (const auto& [key, value] : one.where.items()) figure.keys.push_back(key);
   }
-  std::vector<std::string> texts;
-  for (const ColumnSpec& one : plot.also) texts.push_back(one.measure);
+  std::vector<std::string> texts = {plot.x};
+  for (const ColumnSpec& one : plot.columns) texts.push_back(one.measure);
   if (plot.mark) texts.insert(texts.end(), {plot.mark->x, plot.mark->y});
-  texts.insert(texts.end(), {plot.x, plot.y});
   figure.needs = providers_of(texts);
   if (!plot.where.empty()) {
     json where = plot.where;
@@ -1109,7 +1100,7 @@ Figure plot_figure(const PlotSpec& plot, const NameVariants& names, const Plots&
     };
   }
   figure.within = plot.cycles;
-  if (plot.cycle && !draws_every_cycle(plot) && !is_of_run(plot.y)) {
+  if (plot.cycle && !draws_every_cycle(plot) && !is_of_run(plot.y())) {
     figure.within = {{*plot.cycle, *plot.cycle}};
   }
   return figure;

@@ -40,7 +40,7 @@ struct SeriesSpec {
   std::string marker = {};  ///< one of marker_names
 };
 
-/// A further column of a plot's CSV.
+/// A column of a plot's CSV.
 struct ColumnSpec {
   std::string measure;
   std::string name = {};  ///< name of the column, without unit; if empty, the measure's name
@@ -55,10 +55,13 @@ struct MarkSpec {
 
 struct PlotSpec {
   std::string name;
-  /// A measure of a checkpoint (a number or a curve), a measure of the whole run, or an expression
-  /// of parameters and measures. An expression cannot contain a curve. It cannot contain
-  /// measures of a checkpoint together with measures of the run.
-  std::string y;
+  /// The columns of the CSV. The first column is y: a measure of a checkpoint (a number or a
+  /// curve), a measure of the whole run, or an expression of parameters and measures. An expression
+  /// cannot contain a curve. It cannot contain measures of a checkpoint together with measures of
+  /// the run. If x and y have one value for each run, the other columns are evaluated at the first
+  /// checkpoint of the run.
+  std::vector<ColumnSpec> columns;
+  std::size_t drawn = 1;  ///< number of columns that get a curve
   /// Selects runs by has_parameters(). The key "cycle" selects checkpoints.
   nlohmann::json where = nlohmann::json::object();
   /// If not empty, these parameter values select one variant. The plot then shows differences: `y`
@@ -75,22 +78,19 @@ struct PlotSpec {
   std::string xlabel = {}, ylabel = {};  ///< may contain formulas; if empty, made from x and y
   std::vector<SeriesSpec> series = {};
   std::vector<PublishedSpec> published = {};
-  /// Further columns of the CSV. The first `drawn` of them also get a curve. If x and y have one
-  /// value for each run, `also` is evaluated at the first checkpoint of the run.
-  std::vector<ColumnSpec> also = {};
-  std::size_t drawn = 0;
   std::optional<MarkSpec> mark = {};
   /// The cycle that is drawn if y is a curve, or if x has one value for each run. If empty, the
   /// last cycle that all runs have.
   std::optional<std::uint64_t> cycle = {};
   /// First and last cycle to draw, for traces and scatter. All checkpoints in between are drawn.
   std::optional<std::array<std::uint64_t, 2>> cycles = {};
-  std::string column = {};  ///< name of y's column, without unit; "": the measure's name
   std::string x_symbol = {}, x_unit = {};  ///< of the x axis, if x is a parameter
   /// True if the plot is from a shipped manifest and a user's manifest lists the plot's figure.
   /// Labels in the user's manifest then replace the labels in `series`. The styles in `series` are
   /// then used only if each parameter in which the curves differ is in a SeriesSpec::where.
   bool listed = false;
+
+  const std::string& y() const { return columns.front().measure; }
 };
 
 inline const std::string& figure_of(const PlotSpec& plot) {

@@ -212,11 +212,10 @@ Table followed_table(std::span<const AmplitudeGrowth> all) {
 /// reaches the critical size. A packing without crystallites is drawn with size 1, as in method 2.
 Table largest_table(const Frame& frame, std::span<const AmplitudeGrowth> all) {
   PlotSpec plot{.name = "C_largest",
-                .y = "max(1,largest_crystallite)",
+                .columns = {{"max(1,largest_crystallite)", "largest_crystallite"}},
                 .x = "phi",
                 .log = LogAxes::y,
-                .ylabel = "largest crystallite [grains]",
-                .column = "largest_crystallite"};
+                .ylabel = "largest crystallite [grains]"};
   for (const AmplitudeGrowth& one : all) {
     plot.series.push_back({.where = {{"amplitude_rad", one.amplitude}},
                            .label = fmt::format("$A$ = {}", one.amplitude),

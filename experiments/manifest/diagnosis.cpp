@@ -424,13 +424,13 @@ string lack_of(const PlotSpec& plot, const Scale& scale, RunGroup runs) {
       std::views::transform(runs, [](const FrameRun* run) { return run->ask.target_cycles; }));
   const json wanted = member_of(plot.where, "cycle");
   std::array<std::uint64_t, 2> cycles = plot.cycles.value_or(std::array{std::uint64_t{0}, longest});
-  if (!plot.cycles && !draws_every_cycle(plot) && !is_of_run(plot.y)) {
+  if (!plot.cycles && !draws_every_cycle(plot) && !is_of_run(plot.y())) {
     if (!plot.cycle && scale.until.until) return "";  // `until` decides the last cycle
     cycles[1] = plot.cycle.value_or(shortest);
     // Without `at_cycle`, the plot draws the last cycle that `where` selects.
     if (plot.cycle || wanted.is_null()) cycles[0] = cycles[1];
   }
-  const string lack = lack_of(plot.y, cycles, runs, wanted);
+  const string lack = lack_of(plot.y(), cycles, runs, wanted);
   return lack.empty() ? lack_of(plot.x, cycles, runs, wanted) : lack;
 }
 
@@ -475,9 +475,9 @@ std::size_t curves_of(const SeriesSpec& series, const PlotSpec& plot, RunGroup r
 
 /// Why `at_cycle` has no effect on the plot; "" if it has an effect or is not given.
 string unused_cycle(const PlotSpec& plot) {
-  if (plot.cycle && is_of_run(plot.y)) {
+  if (plot.cycle && is_of_run(plot.y())) {
     return format("{} has one value for each run, so at_cycle has no effect. Leave at_cycle out.",
-                  plot.y);
+                  plot.y());
   }
   return plot.cycle && draws_every_cycle(plot)
              ? "at_cycle has no effect, because the plot draws every cycle. Remove at_cycle."

@@ -211,7 +211,7 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
   static const Names terms = joined({"cycle"}, scalars, numbers(), runs);
   visit(plot.name,
         {.name = "name", .doc = "required; also the name of the plot's files", .required = true});
-  visit(plot.also,
+  visit(plot.columns,
         {.name = "y",
          .doc = "required; a [measure](#measures), with values at checkpoints or one value for "
                 "each run (`onset_size_phi`), or an expression of measures and parameters: "
@@ -279,13 +279,13 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
          .doc = "published numbers that the plot shows. Each has a `source`, and either a `value` "
                 "with an `error` or a list `points`, whose items are [x, y] or [x, y, error]",
          .example = "[{label: Jin et al., value: 0.646, error: 0.001, source: S C}]"});
-  visit(plot.also, {.name = "also",
-                    .doc = "with `show: mean`: further columns of the CSV file, as a list of "
-                           "measures, or as a map from column names to measures: `{phi_u: "
-                           "phi_uncorrected}`",
-                    .names = can_be_y,
-                    .terms = terms,
-                    .example = "[phi_uncorrected]"});
+  visit(plot.columns, {.name = "also",
+                       .doc = "with `show: mean`: further columns of the CSV file, as a list of "
+                              "measures, or as a map from column names to measures: `{phi_u: "
+                              "phi_uncorrected}`",
+                       .names = can_be_y,
+                       .terms = terms,
+                       .example = "[phi_uncorrected]"});
   visit(plot.mark,
         {.name = "mark",
          .doc = "a black point on each curve, at the means of two measures with one value per run",
@@ -1139,21 +1139,17 @@ struct Reader {
   void check(const Node&, const Field&, const auto&) {}
 
   void check(const Node& in, const Field&, Placed<PlotSpec>& plot) {
-    if (const Node* y = in.find("y"); y != nullptr && !plot.also.empty()) {
-      plot.y = plot.also.front().measure;
-      plot.column = plot.also.front().name;
-      plot.also.erase(plot.also.begin());
-      plot.drawn = std::clamp<std::size_t>(y->parts.size(), 1, plot.also.size() + 1) - 1;
-    }
+    if (plot.columns.empty()) plot.columns.emplace_back();  // y was refused
+    plot.drawn = std::clamp<std::size_t>(in.find("y")->parts.size(), 1, plot.columns.size());
     const Node *x = in.find("x"), *cycles = in.find("cycles"), *also = in.find("also");
-    const Measure* curve = find_measure(plot.y, MeasureKind::curve);
+    const Measure* curve = find_measure(plot.y(), MeasureKind::curve);
     const bool is_curve = curve != nullptr, of_run = is_of_run(plot.x);
-    const string not_with_curve = "cannot be used with " + plot.y;
+    const string not_with_curve = "cannot be used with " + plot.y();
     reject_value_if(is_curve, x, not_with_curve,
-                    fmt::format("Leave it out. The x axis of {} is {}.", plot.y,
+                    fmt::format("Leave it out. The x axis of {} is {}.", plot.y(),
                                 is_curve ? curve->x : string_view()));
-    reject_if(!plot.y.empty() && is_of_run(plot.y) && !of_run, &in,
-              plot.y + " has one value for each run", "Use a parameter as x.");
+    reject_if(!plot.y().empty() && is_of_run(plot.y()) && !of_run, &in,
+              plot.y() + " has one value for each run", "Use a parameter as x.");
     reject_if(is_curve, in.find("minus"), not_with_curve,
               "As y, use a measure that is a number: curves cannot be subtracted.");
     reject_value_if(plot.show == Show::rms && !is_curve && plot.x != "cycle" && !of_run,
@@ -1193,14 +1189,13 @@ struct Reader {
 
   // Reads the keys of `series`. A key without `=` is the name of a column, or a value of `by`.
   void name_series(const Node& in, Placed<PlotSpec>& plot) {
-    const std::span drawn = std::span(plot.also).first(plot.drawn);
+    const std::span drawn = std::span(plot.columns).first(plot.drawn);
     for (std::size_t k = 0; k < plot.series.size(); ++k) {
       const Node& part = in.parts[k];
       json& where = plot.series[k].where = json::object();
       if (part.key.find('=') != string::npos) {
         where = read_selector(part);
-      } else if (plot.column == part.key ||
-                 std::ranges::count(drawn, part.key, &ColumnSpec::name) > 0) {
+      } else if (std::ranges::count(drawn, part.key, &ColumnSpec::name) > 0) {
         plot.series[k].column = part.key;
       } else if (plot.by.empty()) {
         reject_key(part, "names no parameter",

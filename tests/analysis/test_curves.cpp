@@ -88,9 +88,10 @@ void remove_where(FrameRun& run, const std::function<bool(double cycle)>& remove
 }
 
 TEST(Curves, TheKeySaysWhereTheNumberOfRunsChanges) {
-  const std::vector<PlotSpec> plots = {{.name = "own", .y = "phi"},
-                                       {.name = "own", .y = "phi", .x = "mean_overlap_d"},
-                                       {.name = "own", .y = "phi", .x = "cycle", .by = "fluid"}};
+  const std::vector<PlotSpec> plots = {
+      {.name = "own", .columns = {{"phi"}}},
+      {.name = "own", .columns = {{"phi"}}, .x = "mean_overlap_d"},
+      {.name = "own", .columns = {{"phi"}}, .x = "cycle", .by = "fluid"}};
   const auto keys = [&](const std::vector<FrameRun>& runs) {
     std::vector<Key> found = {key_of(s2(runs).at(0)), key_of(s2(runs).at(1)),
                               key_of(find_figure("walls")->make(runs).tables.at(0))};
@@ -147,13 +148,14 @@ TEST(Curves, TheKeyIsSilentWhereAMeanEndsWithTheFirstRun) {
 TEST(Curves, TheKeyCountsRunsThatHaveTheMeasure) {
   std::vector<FrameRun> runs = ten_runs();
   for (CheckpointMeasures& c : runs[0].checkpoints) c.measures.numbers["phi"] = std::nan("");
-  const Key key = key_of(plot_figure({.name = "own", .y = "phi"}).make(runs).tables.at(0));
+  const Key key =
+      key_of(plot_figure({.name = "own", .columns = {{"phi"}}}).make(runs).tables.at(0));
   EXPECT_EQ(std::ranges::count_if(key, [](auto& t) { return has(t, "(4 of 5 runs)"); }), 1);
 }
 
 TEST(Curves, TheKeyCountsRunsAtEachParameterAndOfEachCurve) {
   std::vector<FrameRun> runs = two_parameters();
-  const PlotSpec by_drag = {.name = "own", .y = "phi", .x = "drag_kg_per_s"};
+  const PlotSpec by_drag = {.name = "own", .columns = {{"phi"}}, .x = "drag_kg_per_s"};
   const auto key = [&](const PlotSpec& plot) {
     return key_of(plot_figure(plot).make(runs).tables.at(0));
   };
@@ -167,7 +169,7 @@ TEST(Curves, TheKeyCountsRunsAtEachParameterAndOfEachCurve) {
     }
   }
   remove_where(runs[0], [](double cycle) { return cycle == 2; });
-  const PlotSpec profile = {.name = "own", .y = "phi_profile", .cycle = 2};
+  const PlotSpec profile = {.name = "own", .columns = {{"phi_profile"}}, .cycle = 2};
   EXPECT_EQ(std::ranges::count_if(key(profile), [](auto& t) { return has(t, "(1 of 2 runs)"); }),
             1);
   const std::string variant = runs[0].place.variant;
@@ -263,25 +265,25 @@ TEST(OwnPlot, DrawsAMeasureAgainstCycleMeasureOrParameter) {
   const auto table = [&](const PlotSpec& plot) {
     return plot_figure(plot).make(runs).tables.at(0);
   };
-  EXPECT_EQ(table({.name = "own", .y = "phi"}).rows.size(), 6U * 4U);
-  EXPECT_EQ(table({.name = "own", .y = "crystalline_percent", .x = "phi"}).columns.at(1),
+  EXPECT_EQ(table({.name = "own", .columns = {{"phi"}}}).rows.size(), 6U * 4U);
+  EXPECT_EQ(table({.name = "own", .columns = {{"crystalline_percent"}}, .x = "phi"}).columns.at(1),
             "phi_low");
-  EXPECT_EQ(table({.name = "own", .y = "phi", .x = "mean_overlap_d"}).columns.at(4),
+  EXPECT_EQ(table({.name = "own", .columns = {{"phi"}}, .x = "mean_overlap_d"}).columns.at(4),
             "mean_overlap_mean_d");
-  const Table drag = table({.name = "own", .y = "phi", .x = "drag_kg_per_s", .cycle = 2});
+  const Table drag = table({.name = "own", .columns = {{"phi"}}, .x = "drag_kg_per_s", .cycle = 2});
   EXPECT_TRUE(
       to_csv(drag).starts_with("variant,drag_kg_per_s,phi_mean,phi_standard_error,runs,cycle\n"
                                "fluid=cell,0.001,1.6225,0.000577350269,3,2\n"))
       << to_csv(drag);
   EXPECT_EQ(drag.chart.series.size(), 2U) << "a curve for each fluid";
-  const Table traces = table({.name = "own", .y = "phi", .show = Show::traces});
+  const Table traces = table({.name = "own", .columns = {{"phi"}}, .show = Show::traces});
   EXPECT_EQ(traces.chart.series.size(), 18U) << "every run";
   EXPECT_EQ(
       std::ranges::count_if(traces.chart.series, [](const Series& s) { return !s.title.empty(); }),
       6)
       << "each variant once in the key";
-  EXPECT_TRUE(table({.name = "own", .y = "phi", .log = LogAxes::y}).chart.y.log);
-  const PlotSpec by_fluid{.name = "own", .y = "phi", .by = "fluid"};
+  EXPECT_TRUE(table({.name = "own", .columns = {{"phi"}}, .log = LogAxes::y}).chart.y.log);
+  const PlotSpec by_fluid{.name = "own", .columns = {{"phi"}}, .by = "fluid"};
   EXPECT_THROW(table(by_fluid), UsageError) << "it would average over the drags";
   EXPECT_EQ(plot_figure(by_fluid).make(two_variants()).tables.at(0).chart.series.size(), 2U);
 }
@@ -289,7 +291,7 @@ TEST(OwnPlot, DrawsAMeasureAgainstCycleMeasureOrParameter) {
 TEST(OwnPlot, NamesTheUnitOfAnAxisOnce) {
   const std::vector<FrameRun> runs = two_parameters();
   const auto x_axis = [&](const char* x, const char* unit) {
-    const PlotSpec plot{.name = "own", .y = "phi", .x = x, .x_unit = unit};
+    const PlotSpec plot{.name = "own", .columns = {{"phi"}}, .x = x, .x_unit = unit};
     const Axis axis = plot_figure(plot).make(runs).tables.at(0).chart.x;
     return plain_text(axis.name) + " [" + plain_text(axis.unit) + "]";
   };
@@ -302,7 +304,8 @@ TEST(OwnPlot, NamesTheUnitOfAnAxisOnce) {
 TEST(OwnPlot, AgainstAParameterComparesTheLastCycleThatAllRunsHave) {
   std::vector<FrameRun> runs = two_parameters();
   runs.front().checkpoints.pop_back();
-  const auto result = plot_figure({.name = "own", .y = "phi", .x = "drag_kg_per_s"}).make(runs);
+  const auto result =
+      plot_figure({.name = "own", .columns = {{"phi"}}, .x = "drag_kg_per_s"}).make(runs);
   const Table& table = result.tables.at(0);
   ASSERT_EQ(table.columns.back(), "cycle");
   for (const TableRow& row : table.rows) EXPECT_EQ(row.back(), TableCell(2.0));
@@ -312,10 +315,12 @@ TEST(OwnPlot, AgainstAParameterComparesTheLastCycleThatAllRunsHave) {
 
 TEST(OwnPlot, AtACycleNeedsThatCycleAlone) {
   using Cycles = std::array<std::uint64_t, 2>;
-  EXPECT_EQ(plot_figure({.name = "own", .y = "phi", .x = "drag_kg_per_s", .cycle = 2}).within,
+  EXPECT_EQ(
+      plot_figure({.name = "own", .columns = {{"phi"}}, .x = "drag_kg_per_s", .cycle = 2}).within,
+      Cycles({2, 2}));
+  EXPECT_EQ(plot_figure({.name = "own", .columns = {{"phi_profile"}}, .cycle = 2}).within,
             Cycles({2, 2}));
-  EXPECT_EQ(plot_figure({.name = "own", .y = "phi_profile", .cycle = 2}).within, Cycles({2, 2}));
-  EXPECT_EQ(plot_figure({.name = "own", .y = "phi"}).within, std::nullopt);
+  EXPECT_EQ(plot_figure({.name = "own", .columns = {{"phi"}}}).within, std::nullopt);
 }
 
 TEST(OwnPlot, AgainstOneKeyOfAZipIsOneCurve) {
@@ -325,7 +330,7 @@ TEST(OwnPlot, AgainstOneKeyOfAZipIsOneCurve) {
     runs.back().place.swept = {{"amplitude_rad", 50 * drag}, {"drag_kg_per_s", drag}};
   }
   for (const char* x : {"amplitude_rad", "drag_kg_per_s"}) {
-    const auto result = plot_figure({.name = "own", .y = "phi", .x = x}).make(runs);
+    const auto result = plot_figure({.name = "own", .columns = {{"phi"}}, .x = x}).make(runs);
     EXPECT_EQ(result.tables.at(0).chart.series.size(), 1U) << x;
   }
 }
@@ -347,7 +352,8 @@ TEST(OwnPlot, OfTheOnsetOfEachRunWithAClaim) {
   }
   runs.push_back(crystallizing(0.002, 5, 20, 30));
   const auto drawn =
-      plot_figure({.name = "own", .y = "onset_size_phi", .x = "drag_kg_per_s"}).make(runs);
+      plot_figure({.name = "own", .columns = {{"onset_size_phi"}}, .x = "drag_kg_per_s"})
+          .make(runs);
   EXPECT_TRUE(to_csv(drawn.tables.at(0))
                   .starts_with("variant,drag_kg_per_s,onset_size_phi_mean,"
                                "onset_size_phi_standard_error,runs,runs_ended_before,"
@@ -372,7 +378,7 @@ TEST(OwnPlot, OfTheOnsetOfEachRunWithAClaim) {
 TEST(OwnPlot, NamesTheStepsOfAStiffening) {
   std::vector<FrameRun> runs = two_parameters();
   const auto x_name = [&] {
-    const Table table = plot_figure({.name = "own", .y = "phi"}).make(runs).tables.at(0);
+    const Table table = plot_figure({.name = "own", .columns = {{"phi"}}}).make(runs).tables.at(0);
     return plain_text(table.chart.x.name);
   };
   EXPECT_EQ(x_name(), "shear cycle");

@@ -73,7 +73,7 @@ TEST(Onset, CountsCensoredRuns) {
   std::vector<FrameRun> runs = {logistic(0.645), logistic(0.647), logistic(0.646),
                                 logistic(0.66, 10)};
   for (FrameRun& run : runs) run.packing = fmt::format("of run {}", &run - runs.data());
-  const PlotSpec plot{.name = "own", .y = "onset_slope_phi", .x = "amplitude_rad"};
+  const PlotSpec plot{.name = "own", .columns = {{"onset_slope_phi"}}, .x = "amplitude_rad"};
   const auto cell = [&](const char* column) {
     const Table table = plot_figure(plot).make(runs).tables.at(0);
     return table.rows.at(0).at(table.place(column));

@@ -147,21 +147,26 @@ TEST(Formula, IsItalicWithLoweredAndRaisedText) {
 }
 
 TEST(OwnPlot, TakesExpressionsOfParametersAndMeasures) {
-  const Table by_frequency = drawing_of(
-      {.name = "own", .y = "phi", .x = "1/period_s", .xlabel = "frequency $f$ [Hz]", .cycle = 2});
+  const Table by_frequency = drawing_of({.name = "own",
+                                         .columns = {{"phi"}},
+                                         .x = "1/period_s",
+                                         .xlabel = "frequency $f$ [Hz]",
+                                         .cycle = 2});
   EXPECT_EQ(by_frequency.chart.series.size(), 3U) << "a curve for each amplitude";
   EXPECT_EQ(plain_text(by_frequency.chart.x.name), "frequency f [Hz]");
   EXPECT_TRUE(has(to_csv(by_frequency), "\namplitude_rad=0.02,0.5,0.022002,"))
       << to_csv(by_frequency);
   EXPECT_TRUE(has(to_csv(by_frequency), "\namplitude_rad=0.02,2,0.020502,"));
-  const Table both =
-      drawing_of({.name = "own", .y = "1000*(phi - amplitude_rad)/period_s", .x = "cycle"});
+  const Table both = drawing_of(
+      {.name = "own", .columns = {{"1000*(phi - amplitude_rad)/period_s"}}, .x = "cycle"});
   EXPECT_EQ(both.chart.series.size(), 6U);
   for (const Series& series : both.chart.series) {
     for (const ChartPoint& p : points_of(series)) EXPECT_NEAR(p.y, 1, 0.005);
   }
-  const Table strange = drawing_of(
-      {.name = "own", .y = "1/(mean_overlap_d - 2)", .x = "2*cycle", .show = Show::scatter});
+  const Table strange = drawing_of({.name = "own",
+                                    .columns = {{"1/(mean_overlap_d - 2)"}},
+                                    .x = "2*cycle",
+                                    .show = Show::scatter});
   ASSERT_EQ(strange.chart.series.size(), 18U) << "every run";
   EXPECT_EQ(strange.chart.series[0].points.size(), 3U) << "1/0 at cycle 2";
   EXPECT_EQ(strange.chart.series[0].points[2].x, 6);
@@ -170,7 +175,7 @@ TEST(OwnPlot, TakesExpressionsOfParametersAndMeasures) {
 }
 
 TEST(OwnPlot, TakesTheNeedsOfItsExpression) {
-  const Figure figure = plot_figure({.name = "own", .y = "stress_xy_Pa/msd_1_cycle_d2"});
+  const Figure figure = plot_figure({.name = "own", .columns = {{"stress_xy_Pa/msd_1_cycle_d2"}}});
   const std::vector<std::string> names = {"stress_xy_Pa", "msd_1_cycle_d2"};
   EXPECT_EQ(figure.needs, providers_of(names));
   EXPECT_EQ(figure.needs.size(), 2U);
@@ -179,7 +184,7 @@ TEST(OwnPlot, TakesTheNeedsOfItsExpression) {
 TEST(OwnPlot, DrawsSeriesAsStated) {
   const PlotSpec plot{
       .name = "own",
-      .y = "phi",
+      .columns = {{"phi"}},
       .x = "period_s",
       .by = "amplitude_rad",
       .series = {
@@ -204,15 +209,15 @@ TEST(OwnPlot, DrawsSeriesAsStated) {
 TEST(OwnPlot, HoldsTheStatedStylesOfOtherPlots) {
   const std::vector<PlotSpec> plots = {
       {.name = "stated",
-       .y = "phi",
+       .columns = {{"phi"}},
        .x = "1/period_s",
        .by = "amplitude_rad",
        .series = {{.where = {{"amplitude_rad", 0.02}}, .colour = "blue", .marker = "open_circle"},
                   {.where = {{"amplitude_rad", 0.08}}, .colour = "vermilion"}}},
-      {.name = "panels", .y = "phi", .by = "amplitude_rad", .panel = "period_s"},
-      {.name = "variants", .y = "phi"},
+      {.name = "panels", .columns = {{"phi"}}, .by = "amplitude_rad", .panel = "period_s"},
+      {.name = "variants", .columns = {{"phi"}}},
       {.name = "other",
-       .y = "phi",
+       .columns = {{"phi"}},
        .x = "period_s",
        .by = "amplitude_rad",
        .series = {{.where = {{"amplitude_rad", 0.04}}, .colour = "blue"}}}};
@@ -246,8 +251,8 @@ TEST(OwnPlot, HoldsTheStatedStylesOfOtherPlots) {
 }
 
 TEST(OwnPlot, AveragesOnlyOverTheRunsThatItSelects) {
-  const Table table =
-      drawing_of({.name = "own", .y = "phi", .where = {{"period_s", 2.0}}, .by = "amplitude_rad"});
+  const Table table = drawing_of(
+      {.name = "own", .columns = {{"phi"}}, .where = {{"period_s", 2.0}}, .by = "amplitude_rad"});
   EXPECT_EQ(table.chart.series.size(), 3U);
 }
 
@@ -263,7 +268,7 @@ TEST(OwnPlot, WritesListsAndRangesInWords) {
 TEST(OwnPlot, ShowsPublishedNumbers) {
   const Table table = drawing_of(
       {.name = "own",
-       .y = "phi",
+       .columns = {{"phi"}},
        .x = "amplitude_rad",
        .published = {
            {.label = "Jin", .source = "S C", .value = 0.05, .error = 0.01},
@@ -288,14 +293,14 @@ TEST(OwnPlot, ShowsPublishedNumbers) {
   const std::string caption = caption_of("A title", twice);
   EXPECT_EQ(caption.find("Published"), caption.rfind("Published")) << caption;
   EXPECT_EQ(drawing_of({.name = "own",
-                        .y = "phi",
+                        .columns = {{"phi"}},
                         .published = {{.label = "exact", .source = "S C", .value = 0.05}}})
                 .chart.lines.size(),
             1U);
 }
 
 TEST(OwnPlot, HasAPanelForEachValueWithEqualRanges) {
-  const PlotSpec plot{.name = "own", .y = "phi", .x = "cycle", .panel = "period_s"};
+  const PlotSpec plot{.name = "own", .columns = {{"phi"}}, .x = "cycle", .panel = "period_s"};
   const NameVariants names = [](const std::vector<nlohmann::json>& variants) {
     std::map<nlohmann::json, std::string> named;
     for (const auto& variant : variants) named[variant] = "<" + words_of(variant) + ">";
@@ -319,12 +324,12 @@ TEST(OwnPlot, HasAPanelForEachValueWithEqualRanges) {
     EXPECT_EQ(low, result.tables[0].chart.y.low);
     EXPECT_EQ(high, result.tables[0].chart.y.high);
   }
-  EXPECT_THROW(
-      plot_figure({.name = "own", .y = "phi", .by = "amplitude_rad"}).make(runs_of_sweep()),
-      UsageError)
+  EXPECT_THROW(plot_figure({.name = "own", .columns = {{"phi"}}, .by = "amplitude_rad"})
+                   .make(runs_of_sweep()),
+               UsageError)
       << "it would average over the periods";
   EXPECT_NO_THROW(
-      plot_figure({.name = "own", .y = "phi", .by = "amplitude_rad", .panel = "period_s"})
+      plot_figure({.name = "own", .columns = {{"phi"}}, .by = "amplitude_rad", .panel = "period_s"})
           .make(runs_of_sweep()));
   PlotSpec compared = plot;
   compared.published = {{.label = "Jin", .source = "S C", .value = 0.74}};
@@ -334,9 +339,10 @@ TEST(OwnPlot, HasAPanelForEachValueWithEqualRanges) {
 }
 
 TEST(OwnPlot, OfOneFigureAreItsPanels) {
-  const std::vector<PlotSpec> plots = {{.name = "a", .y = "phi", .figure = "pair"},
-                                       {.name = "alone", .y = "phi"},
-                                       {.name = "b", .y = "mean_overlap_d", .figure = "pair"}};
+  const std::vector<PlotSpec> plots = {
+      {.name = "a", .columns = {{"phi"}}, .figure = "pair"},
+      {.name = "alone", .columns = {{"phi"}}},
+      {.name = "b", .columns = {{"mean_overlap_d"}}, .figure = "pair"}};
   const std::vector<ClaimSpec> claims = {
       {.id = "c",
        .figure = "pair",
@@ -404,8 +410,8 @@ TEST(OwnClaim, ComparesWithAPublishedNumber) {
 TEST(OwnPlot, HasFurtherColumnsWithNamesOfTheirOwn) {
   const Table table = drawing_of(
       {.name = "own",
-       .y = "phi",
-       .also = {{"phi_uncorrected", "phi_u"}, {"mean_overlap_d", "overlap"}, {"time_s"}}});
+       .columns = {
+           {"phi"}, {"phi_uncorrected", "phi_u"}, {"mean_overlap_d", "overlap"}, {"time_s"}}});
   EXPECT_TRUE(to_csv(table).starts_with(
       "variant,cycle,phi_mean,phi_standard_error,phi_u_mean,phi_u_standard_error,overlap_mean_d,"
       "overlap_standard_error_d,time_mean_s,time_standard_error_s,runs\n"))
@@ -455,7 +461,7 @@ std::vector<FrameRun> runs_of_steps() {
 }
 
 const PlotSpec kErrors = {.name = "own",
-                          .y = "phi",
+                          .columns = {{"phi"}},
                           .minus = {{"steps_per_cycle", 100}},
                           .x = "core_time_s",
                           .by = "engine",
@@ -518,7 +524,7 @@ TEST(OwnPlot, IsADifferenceFromTheRunWithTheSamePacking) {
   EXPECT_EQ(points, 9U) << "each run at its own core time";
 
   PlotSpec of_costs = kErrors;
-  of_costs.y = "core_time_s";
+  of_costs.columns = {{"core_time_s"}};
   of_costs.x = "steps_per_cycle";
   const Table costs = errors_of(runs_of_steps(), of_costs);
   EXPECT_EQ(costs.columns[2], "core_time_difference_rms_s");
@@ -730,7 +736,7 @@ TEST(OwnFigure, SimulatesOnlyTheCyclesOfItsPartsThatNeedIt) {
   claim.figure = "f";
   claim.compare = "phi_at_rest";
   claim.cycles = {{1, 15}};
-  const PlotSpec plot{.name = "p", .y = "phi", .figure = "f"};
+  const PlotSpec plot{.name = "p", .columns = {{"phi"}}, .figure = "f"};
   const auto simulated = [&](const PlotSpec& of) {
     const std::vector<PlotSpec> plots = {of};
     const std::vector<ClaimSpec> claims = {claim};
@@ -738,7 +744,7 @@ TEST(OwnFigure, SimulatesOnlyTheCyclesOfItsPartsThatNeedIt) {
   };
   EXPECT_EQ(simulated(plot), Cycles({1, 15}));
   EXPECT_EQ(find_figure("B5")->simulated, Cycles({1, 15}));
-  EXPECT_EQ(simulated({.name = "p", .y = "phi_at_rest", .figure = "f"}), std::nullopt);
+  EXPECT_EQ(simulated({.name = "p", .columns = {{"phi_at_rest"}}, .figure = "f"}), std::nullopt);
 }
 
 }  // namespace
