@@ -46,16 +46,8 @@ json number(const std::optional<double>& value) {
   return value ? rounded(*value == 0 ? 0 : *value, significant) : json();
 }
 
-/// Name, symbol and unit: "mean overlap ⟨δ⟩ [d]".
-std::string axis_text(const Axis& axis) {
-  std::string text = plain_text(axis.name);
-  if (!axis.symbol.empty()) text += (text.empty() ? "" : " ") + plain_text(axis.symbol);
-  return axis.unit.empty() ? text : text + " [" + plain_text(axis.unit) + "]";
-}
-
 json to_json(const Axis& axis) {
-  const bool spaced = !axis.name.empty() && !axis.symbol.empty();
-  return {{"label", to_json(axis.name + (spaced ? Text("  ") : Text()) + axis.symbol)},
+  return {{"label", to_json(label_of({.name = axis.name, .symbol = axis.symbol}, "  "))},
           {"unit", to_json(axis.unit)},
           {"log", axis.log},
           {"whole", axis.whole},
@@ -89,6 +81,15 @@ json to_json(const Series& series) {
 Text operator+(Text first, const Text& second) {
   first.parts.insert(first.parts.end(), second.parts.begin(), second.parts.end());
   return first;
+}
+
+Text label_of(const Axis& axis, const char* space) {
+  Text label = axis.name;
+  for (const Text& part :
+       {axis.symbol, axis.unit.empty() ? Text() : Text("[") + axis.unit + Text("]")}) {
+    if (!part.empty()) label = label.empty() ? part : label + space + part;
+  }
+  return label;
 }
 
 Text formula(std::string_view text) {
@@ -237,11 +238,15 @@ std::string plain_text(const Text& text) {
   return plain;
 }
 
-bool is_on_log_axes(const Chart& chart, const ChartPoint& p) {
-  return !(chart.x.log && !(p.x > 0)) && !(chart.y.log && !(p.y > 0));
+std::vector<ChartPoint> drawn_points(const Chart& chart, const Series& series) {
+  std::vector<ChartPoint> points = points_of(series);
+  std::erase_if(points, [&](const ChartPoint& p) {
+    return (chart.x.log && p.x <= 0) || (chart.y.log && p.y <= 0);
+  });
+  return points;
 }
 
-bool is_on_log_axes(const Chart& chart, const ReferenceLine& line) {
+bool is_drawn(const Chart& chart, const ReferenceLine& line) {
   return line.at > 0 || !(line.vertical ? chart.x : chart.y).log;
 }
 
@@ -260,7 +265,8 @@ std::string caption_of(const std::string& title, std::span<const Table> tables) 
     if (chart.series.empty()) continue;
     ++charts;
     // Consecutive panels with equal axes share one sentence.
-    const std::string what = fmt::format("{} against {}{}.", axis_text(chart.y), axis_text(chart.x),
+    const std::string what = fmt::format("{} against {}{}.", plain_text(label_of(chart.y, " ")),
+                                         plain_text(label_of(chart.x, " ")),
                                          chart.errors.empty() ? "" : "; " + chart.errors);
     std::string panel = chart.letter.empty() ? "" : "(" + chart.letter + ")";
     if (!chart.title.empty()) panel += (panel.empty() ? "" : " ") + plain_text(chart.title);
@@ -270,14 +276,15 @@ std::string caption_of(const std::string& title, std::span<const Table> tables) 
     own_errors = own_errors || !chart.errors.empty();
     std::size_t lost = 0;
     for (const Series& series : chart.series) {
-      for (const ChartPoint& p : points_of(series)) {
+      const std::vector<ChartPoint> points = points_of(series);
+      lost += points.size() - drawn_points(chart, series).size();
+      for (const ChartPoint& p : points) {
         if (p.y_error && chart.errors.empty()) (series.band ? bands : bars) = true;
-        lost += is_on_log_axes(chart, p) ? 0 : 1;
       }
     }
     for (const ReferenceLine& line : chart.lines) {
       add_once(lines, plain_text(line.title));
-      lost += is_on_log_axes(chart, line) ? 0 : 1;
+      lost += is_drawn(chart, line) ? 0 : 1;
     }
     if (!chart.note.empty()) notes[chart.note].push_back(chart.letter);
     add_once(sources, chart.sources);

@@ -72,6 +72,9 @@ struct Axis {
   bool clip = false;  ///< the axis ends at low and high even if data lie beyond
 };
 
+/// Name, symbol and unit, separated by `space`: "mean overlap ⟨δ⟩ [d]".
+Text label_of(const Axis& axis, const char* space);
+
 struct ChartPoint {
   double x = 0;
   double y = 0;
@@ -176,10 +179,10 @@ std::string digits(double value, int significant = 9);
 /// The text without styles. A subscript follows "_", a superscript follows "^".
 std::string plain_text(const Text& text);
 
-/// Whether the chart can draw the point or, in the second overload, the reference line. A
-/// logarithmic axis shows only positive values.
-bool is_on_log_axes(const Chart& chart, const ChartPoint& point);
-bool is_on_log_axes(const Chart& chart, const ReferenceLine& line);
+/// The points_of() the series that the chart draws. A logarithmic axis shows only positive values.
+std::vector<ChartPoint> drawn_points(const Chart& chart, const Series& series);
+/// Whether the chart draws the reference line.
+bool is_drawn(const Chart& chart, const ReferenceLine& line);
 
 /// The caption of a figure: one paragraph that begins with `title` and explains the panels, the
 /// error bars and the reference lines.

@@ -31,26 +31,18 @@ constexpr std::string_view style =
     // The legend is above the frame, since inside the frame it could hide data.
     "set key above horizontal center noautotitle Left reverse samplen 1.2 spacing 0.9\n";
 
-/// A single-quoted gnuplot string, in which each quote of `text` is doubled. `text` must come from
-/// markup(), which puts a `\` before each quote. Without the `\`, gnuplot misreads the string if
-/// `text` begins with a quote or contains `''`.
-std::string literal(const std::string& text) {
-  std::string inside;
-  for (const char c : text) {
-    if (c == '\'') inside += '\'';
-    if (static_cast<unsigned char>(c) >= 0x20) inside += c;  // a line break would end the string
-  }
-  return fmt::format("'{}'", inside);
-}
-
-/// The text in gnuplot's enhanced markup. The `{}` after a backslash prevents gnuplot from reading
-/// `\\U+0041` as the character "A".
-std::string markup(const Text& text) {
+/// The text in gnuplot's enhanced markup, as a single-quoted gnuplot string. In such a string each
+/// quote is doubled. The `\` before a quote is needed, too: without it, gnuplot misreads a string
+/// that begins with a quote or contains `''`. The `{}` after a backslash prevents gnuplot from
+/// reading `\\U+0041` as the character "A".
+std::string literal(const Text& text) {
   std::string result;
   for (const TextPart& part : text.parts) {
     std::string plain;
     for (const char c : part.text) {
+      if (static_cast<unsigned char>(c) < 0x20) continue;  // a line break would end the string
       if (std::string_view("_^@&{}\\~'").find(c) != std::string_view::npos) plain += '\\';
+      if (c == '\'') plain += c;
       plain += c;
       if (c == '\\') plain += "{}";
     }
@@ -59,16 +51,7 @@ std::string markup(const Text& text) {
               : part.style == "sup" ? "^{" + plain + "}"
                                     : plain;
   }
-  return result;
-}
-
-std::string label_of(const Axis& axis) {
-  std::string label = markup(axis.name);
-  for (const std::string& part :
-       {markup(axis.symbol), axis.unit.empty() ? "" : "[" + markup(axis.unit) + "]"}) {
-    if (!part.empty()) label += (label.empty() ? "" : "  ") + part;
-  }
-  return label;
+  return "'" + result + "'";
 }
 
 /// The range of the data along one axis, including error bars and reference lines.
@@ -148,25 +131,23 @@ class Script {
  public:
   explicit Script(const Table& table) : chart_(table.chart) {
     for (const Series& series : chart_.series) {
-      points_.push_back(points_of(series));
-      for (ChartPoint& p : points_.back()) p.x += series.shift;
-      std::erase_if(points_.back(),
-                    [this](const ChartPoint& p) { return !is_on_log_axes(chart_, p); });
-      for (const ChartPoint& p : points_.back()) {
+      points_.push_back(drawn_points(chart_, series));
+      for (ChartPoint& p : points_.back()) {
+        p.x += series.shift;
         x_.take(p.x, p.x_error, chart_.x.log);
         y_.take(p.y, p.y_error, chart_.y.log);
       }
       longest_ = std::max(longest_, points_.back().size());
     }
     for (const ReferenceLine& line : chart_.lines) {
-      if (line.vertical || !is_on_log_axes(chart_, line)) continue;
+      if (line.vertical || !is_drawn(chart_, line)) continue;
       y_.take(line.at, std::nullopt);
       lines_ = true;
     }
   }
 
   std::string text() {
-    if (!chart_.title.empty()) add("set title {}\n", literal(markup(chart_.title)));
+    if (!chart_.title.empty()) add("set title {}\n", literal(chart_.title));
     if (!chart_.letter.empty()) {
       add("set label '({})' at screen 0.015, screen 0.96 left front\n", chart_.letter);
     }
@@ -174,7 +155,8 @@ class Script {
     // `width`, it would use too few columns.
     const Layout layout = layout_of(chart_);
     add("set key maxcols {} width -{}\n", layout.columns, layout.longest / 4);
-    add("set xlabel {}\nset ylabel {}\n", literal(label_of(chart_.x)), literal(label_of(chart_.y)));
+    add("set xlabel {}\nset ylabel {}\n", literal(label_of(chart_.x, "  ")),
+        literal(label_of(chart_.y, "  ")));
     if (longest_ == 0) {
       add("set label 'no data' at graph 0.5, graph 0.5 center\nplot [0:1] [0:1] NaN notitle\n");
       return text_;
@@ -183,7 +165,7 @@ class Script {
     ticks("y", chart_.y, y_);
     ranges();
     for (const ReferenceLine& line : chart_.lines) {
-      if (is_on_log_axes(chart_, line)) reference(line);
+      if (is_drawn(chart_, line)) reference(line);
     }
     for (std::size_t k = 0; k < points_.size(); ++k) data(k);
     // The legend lists the series in order. The first curve is drawn last, on top of the others.
@@ -312,7 +294,7 @@ class Script {
 
   static std::string key_entry(const Series& series) {
     return fmt::format("keyentry with {} {} {}", kind_of(series), line_style(series),
-                       series.title.empty() ? "notitle" : "title " + literal(markup(series.title)));
+                       series.title.empty() ? "notitle" : "title " + literal(series.title));
   }
 
   void errors(std::size_t k, std::vector<std::string>& plots) const {
@@ -380,7 +362,7 @@ std::string text_table_commands(const TextTable& table) {
   int y = row_height / 2 + 3;
   const auto label = [&](const Text& words, int x, const char* how, const std::string& colour) {
     text += fmt::format("set label {} at screen {:.5f}, screen {:.5f} {} tc rgb '{}'\n",
-                        literal(markup(words)), x / width, 1 - y / height, how, colour);
+                        literal(words), x / width, 1 - y / height, how, colour);
   };
   for (std::size_t r = 0; r < table.rows.size(); ++r, y += row_height) {
     int left = 0;

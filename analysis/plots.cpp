@@ -492,10 +492,14 @@ std::vector<Bin> average(const PlotSpec& plot, const Curve& curve,
       for (std::size_t k = 0; k < columns.size(); ++k) {
         add_mean([k](const Sample& sample) { return sample.y[k]; });
       }
-      if (what == Against::phi && !std::isfinite(values[1])) continue;
-      bins[at].runs.push_back(trace.run);
-      bins[at].values.push_back(std::move(values));
-      bins[at].above.push_back(&trace.above);
+      const bool both = std::isfinite(values[0]) && std::isfinite(values[1]);
+      if (what == Against::phi && !both) continue;
+      Members& bin = bins[at];
+      // If x is a measure of checkpoints, only runs that have x and y are averaged.
+      if (what == Against::measure && !both) continue;
+      bin.runs.push_back(trace.run);
+      bin.values.push_back(std::move(values));
+      bin.above.push_back(&trace.above);
     }
   }
   std::vector<Bin> found;
@@ -504,11 +508,6 @@ std::vector<Bin> average(const PlotSpec& plot, const Curve& curve,
     const auto over = [&](std::size_t k, const auto& statistics) {
       std::vector<double> values;
       for (const std::vector<double>& of_run : members.values) values.push_back(of_run[k]);
-      // If x is a measure of checkpoints, only runs that have x and y are averaged.
-      for (std::size_t r = 0; what == Against::measure && r < values.size(); ++r) {
-        const auto& of_run = members.values[r];
-        if (!std::isfinite(of_run[0]) || !std::isfinite(of_run[1])) values[r] = std::nan("");
-      }
       return statistics(over_packings(members.runs, values));
     };
     bin.x = over(0, over_runs);
@@ -934,15 +933,14 @@ void share_ranges(std::vector<Table>& tables) {
   std::array<double, 2> low = {infinite, infinite}, high = {-infinite, -infinite};
   for (const Table& table : tables) {
     for (const Series& series : table.chart.series) {
-      for (const ChartPoint& p : points_of(series)) {
-        if (!is_on_log_axes(table.chart, p)) continue;
+      for (const ChartPoint& p : drawn_points(table.chart, series)) {
         const double error = table.chart.y.log ? 0 : p.y_error.value_or(0);
         low = {std::min(low[0], p.x), std::min(low[1], p.y - error)};
         high = {std::max(high[0], p.x), std::max(high[1], p.y + error)};
       }
     }
     for (const ReferenceLine& line : table.chart.lines) {
-      if (!is_on_log_axes(table.chart, line)) continue;
+      if (!is_drawn(table.chart, line)) continue;
       low[1] = std::min(low[1], line.at);
       high[1] = std::max(high[1], line.at);
     }

@@ -91,11 +91,10 @@ void lay_out(std::vector<Table>& tables, bool wide) {
 /// are no such series, checks all series.
 bool has_no_value(const Table& table) {
   if (table.chart.series.empty()) return table.rows.empty();
-  const auto is_drawn = [&](const ChartPoint& point) { return is_on_log_axes(table.chart, point); };
   const auto is_own = [](const Series& one) { return one.thin || !one.variant.empty(); };
   const bool none_own = std::ranges::none_of(table.chart.series, is_own);
   return std::ranges::all_of(table.chart.series, [&](const Series& series) {
-    return !(none_own || is_own(series)) || std::ranges::none_of(points_of(series), is_drawn);
+    return !(none_own || is_own(series)) || drawn_points(table.chart, series).empty();
   });
 }
 
