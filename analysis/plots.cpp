@@ -974,6 +974,8 @@ FigureResult make_plot(const PlotSpec& plot, const Frame& frame, const NameVaria
   const Looks looks(frame, stated_looks(plot, others), std::move(shared));
   FigureResult result;
   std::vector<json> wheres;
+  for (const auto& [value, members] : panels) wheres.push_back({{plot.panel, value}});
+  const auto named = names ? names(wheres) : std::map<json, std::string>();
   for (auto& [value, members] : panels) {
     Panel panel{plot, std::move(members)};
     panel.cycle = cycle_of(plot, panel.selected);
@@ -990,15 +992,9 @@ FigureResult make_plot(const PlotSpec& plot, const Frame& frame, const NameVaria
     add_published(plot, table.chart);
     if (plot.panel.empty()) continue;
     table.name += fmt::format("_{}", result.tables.size());
-    wheres.push_back({{plot.panel, value}});
-    table.chart.title = words_of(wheres.back());
+    const json where = {{plot.panel, value}};
+    table.chart.title = names ? named.at(where) : words_of(where);
     add_panel_column(plot.panel, value, table);
-  }
-  if (names && !wheres.empty()) {
-    const auto named = names(wheres);
-    for (std::size_t k = 0; k < wheres.size(); ++k) {
-      result.tables[k].chart.title = named.at(wheres[k]);
-    }
   }
   if (result.tables.size() > 1) share_ranges(result.tables);
   return result;

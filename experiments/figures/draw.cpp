@@ -178,11 +178,19 @@ void mark_primary(const std::vector<RegisteredManifest>& manifests, const RunSel
   }
 }
 
-/// Measures the runs in `frame`, and sets the lineage, tables and verdicts of `made`.
-void make_of_runs(const Store& store, const WantedFigure& wanted, const FigureOptions& options,
-                  CollectedRuns frame, ComputedFigure& made) {
+}  // namespace
+
+ComputedFigure compute_figure(const Store& store, const WantedFigure& wanted,
+                              const FigureOptions& options) {
   const Figure& figure = wanted.figure;
-  std::vector<FrameRun>& runs = frame.runs;
+  CollectedRuns collected = collect_runs(store, wanted, options.runs, options);
+  std::vector<FrameRun>& runs = collected.runs;
+  ComputedFigure made;
+  made.name = figure.name;
+  made.title = figure.title;
+  made.experiment = wanted.experiment;
+  made.scale = collected.scale;
+  made.notes = std::move(collected.notes);
   MeasureOptions measuring = options;
   measuring.also = wanted.also;
   measuring.simulated = figure.simulated;
@@ -221,14 +229,14 @@ void make_of_runs(const Store& store, const WantedFigure& wanted, const FigureOp
                     "checkpoints, so phi and other measures of interior grains have no value there",
                     without_interior, counted(made.runs, "run")));
   }
-  static_cast<FigureResult&>(made) = figure.make(frame);
+  static_cast<FigureResult&>(made) = figure.make(collected);
   const bool computed = find_named(computed_figures(), figure.name) != nullptr;
   for (Verdict& verdict : made.verdicts) {
-    if (computed && !frame.pending.empty()) {  // other claims do this at each look
+    if (computed && !collected.pending.empty()) {  // other claims do this at each look
       withhold(verdict);
-      const bool one = frame.pending.size() == 1;
+      const bool one = collected.pending.size() == 1;
       add_note(verdict.note, fmt::format("{} {} not ended, or {} not selected",
-                                         counted(frame.pending.size(), "planned run"),
+                                         counted(collected.pending.size(), "planned run"),
                                          one ? "has" : "have", one ? "is" : "are"));
     }
     // The estimate may be missing because runs of the claim were not selected.
@@ -241,27 +249,13 @@ void make_of_runs(const Store& store, const WantedFigure& wanted, const FigureOp
     name_run_counts(table);
     if (has_no_value(table)) made.empty.push_back(table.name);
   }
-  if (made.empty.empty() && !(made.tables.empty() && made.verdicts.empty())) return;
-  made.why_empty = fmt::format(
-      "Nothing is drawn{}{}: no run has {}.", made.empty.empty() ? "" : " in ",
-      fmt::join(made.empty, ", "),
-      runs.empty() ? "a checkpoint at the cycles to be shown" : "the values to be shown");
-}
-
-}  // namespace
-
-ComputedFigure compute_figure(const Store& store, const WantedFigure& wanted,
-                              const FigureOptions& options) {
-  CollectedRuns collected = collect_runs(store, wanted, options.runs, options);
-  ComputedFigure made;
-  made.name = wanted.figure.name;
-  made.title = wanted.figure.title;
-  made.experiment = wanted.experiment;
-  made.scale = collected.scale;
-  made.notes = std::move(collected.notes);
-  const ReadManifests manifests = collected.manifests;
-  make_of_runs(store, wanted, options, std::move(collected), made);
-  mark_primary(*manifests, options.runs, made);
+  if (!made.empty.empty() || (made.tables.empty() && made.verdicts.empty())) {
+    made.why_empty = fmt::format(
+        "Nothing is drawn{}{}: no run has {}.", made.empty.empty() ? "" : " in ",
+        fmt::join(made.empty, ", "),
+        runs.empty() ? "a checkpoint at the cycles to be shown" : "the values to be shown");
+  }
+  mark_primary(*collected.manifests, options.runs, made);
   lay_out(made.tables, options.wide);
   made.caption = caption_of(made, options.runs);
   return made;

@@ -1140,8 +1140,9 @@ struct Reader {
 
   void check(const Node& in, const Field&, Placed<PlotSpec>& plot) {
     if (plot.columns.empty()) plot.columns.emplace_back();  // y was refused
-    plot.drawn = std::clamp<std::size_t>(in.find("y")->parts.size(), 1, plot.columns.size());
-    const Node *x = in.find("x"), *cycles = in.find("cycles"), *also = in.find("also");
+    const Node *x = in.find("x"), *y = in.find("y");
+    const Node *cycles = in.find("cycles"), *also = in.find("also");
+    plot.drawn = std::clamp<std::size_t>(y->parts.size(), 1, plot.columns.size());
     const Measure* curve = find_measure(plot.y(), MeasureKind::curve);
     const bool is_curve = curve != nullptr, of_run = is_of_run(plot.x);
     const string not_with_curve = "cannot be used with " + plot.y();
@@ -1150,6 +1151,8 @@ struct Reader {
                                 is_curve ? curve->x : string_view()));
     reject_if(!plot.y().empty() && is_of_run(plot.y()) && !of_run, &in,
               plot.y() + " has one value for each run", "Use a parameter as x.");
+    reject_if(is_curve && plot.drawn > 1, y, "lists a curve with other columns",
+              "Draw each curve in a plot of its own.");
     reject_if(is_curve, in.find("minus"), not_with_curve,
               "As y, use a measure that is a number: curves cannot be subtracted.");
     reject_value_if(plot.show == Show::rms && !is_curve && plot.x != "cycle" && !of_run,
