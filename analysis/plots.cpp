@@ -975,7 +975,8 @@ FigureResult make_plot(const PlotSpec& plot, const Frame& frame, const NameVaria
   FigureResult result;
   std::vector<json> wheres;
   for (const auto& [value, members] : panels) wheres.push_back({{plot.panel, value}});
-  const auto named = names ? names(wheres) : std::map<json, std::string>();
+  std::map<json, std::string> named;
+  if (names && !plot.panel.empty()) named = names(wheres);
   for (auto& [value, members] : panels) {
     Panel panel{plot, std::move(members)};
     panel.cycle = cycle_of(plot, panel.selected);

@@ -1151,8 +1151,6 @@ struct Reader {
                                 is_curve ? curve->x : string_view()));
     reject_if(!plot.y().empty() && is_of_run(plot.y()) && !of_run, &in,
               plot.y() + " has one value for each run", "Use a parameter as x.");
-    reject_if(is_curve && plot.drawn > 1, y, "lists a curve with other columns",
-              "Draw each curve in a plot of its own.");
     reject_if(is_curve, in.find("minus"), not_with_curve,
               "As y, use a measure that is a number: curves cannot be subtracted.");
     reject_value_if(plot.show == Show::rms && !is_curve && plot.x != "cycle" && !of_run,
@@ -1164,8 +1162,13 @@ struct Reader {
               "during a run",
               "Use `show: traces`. As x, use `cycle` or a measure.");
     reject_if(!plot.figure.empty(), cycles, "cannot be used with figure", "Leave out `figure`.");
-    if (also != nullptr && (is_curve || plot.show != Show::mean)) {
-      reject(*also, "needs `show: mean` and a y that is not a curve", "Leave it out.");
+    const bool any_curve = std::ranges::any_of(plot.columns, [](const ColumnSpec& one) {
+      return find_measure(one.measure, MeasureKind::curve) != nullptr;
+    });
+    reject_if(any_curve && plot.columns.size() > 1, also != nullptr ? also : y,
+              "combines a curve with other columns", "Draw each curve in a plot of its own.");
+    if (also != nullptr && plot.show != Show::mean) {
+      reject(*also, "needs `show: mean`", "Leave it out.");
     } else if (const string twice = repeated_column(plot); !twice.empty()) {
       reject(also != nullptr ? *also : in, fmt::format("gives two columns the name {}", twice),
              "Rename one of these columns: `also: {NAME: measure}`.");

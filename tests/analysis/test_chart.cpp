@@ -232,6 +232,15 @@ TEST(Chart, TheCaptionCountsWhatALogarithmicAxisLeavesOut) {
                   " Values that are not positive are not drawn: 1."));
 }
 
+TEST(Chart, AShiftMovesNoPointOntoALogarithmicAxis) {
+  const Table table{.name = "t",
+                    .chart = {.x = {.name = "x", .log = true},
+                              .series = {{.points = {{0, 1}, {2, 3}}, .shift = 0.5}}}};
+  const std::string script = gnuplot_script(table);
+  EXPECT_TRUE(has(script, "\n2.5,3,,\n")) << script;
+  EXPECT_FALSE(has(script, "\n0.5,1,,\n")) << "the caption says that it is not drawn\n" << script;
+}
+
 TEST(Chart, EveryPanelOfEveryFigureHasOne) {
   std::vector<FrameRun> runs;
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
