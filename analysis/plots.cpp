@@ -162,10 +162,9 @@ struct Sample {
 };
 
 struct Trace : Selected {
-  std::vector<Sample> samples = {};    ///< in the order of the checkpoints
-  Missing missing = Missing::nothing;  ///< for a measure of the whole run: why y is missing
-  /// For each column: the bound RunValue::above if the run ended before the event; otherwise NaN.
-  std::vector<double> above = {};
+  std::vector<Sample> samples = {};  ///< in the order of the checkpoints
+  /// For each column: its RunValue if it is a measure of the whole run.
+  std::vector<RunValue> of_run = {};
 };
 
 /// Runs that are drawn as one curve.
@@ -202,9 +201,8 @@ void evaluate(const PlotSpec& plot, std::span<const NumberColumn> columns, const
   };
   for (const ColumnSpec& column : plot.columns) {
     const Measure* measure = find_measure(column.measure, MeasureKind::run);
-    const RunValue value = measure == nullptr ? RunValue{} : measure->of_run(*trace.run);
-    if (trace.above.empty()) trace.missing = value.missing;
-    trace.above.push_back(trace.partners.empty() ? value.above : std::nan(""));
+    trace.of_run.push_back(measure == nullptr ? RunValue{} : measure->of_run(*trace.run));
+    if (!trace.partners.empty()) trace.of_run.back().above = std::nan("");
   }
   switch (against(plot)) {
     case Against::curve:
@@ -458,8 +456,8 @@ std::vector<Bin> average(const PlotSpec& plot, const Curve& curve,
   const bool by_cycle = what == Against::cycle || what == Against::measure;
   struct Members {
     std::vector<const FrameRun*> runs;
-    std::vector<std::vector<double>> values;        // for each run: x, then all y
-    std::vector<const std::vector<double>*> above;  // Trace::above of each run
+    std::vector<std::vector<double>> values;            // for each run: x, then all y
+    std::vector<const std::vector<RunValue>*> of_runs;  // Trace::of_run of each run
     std::map<Missing, std::size_t> missing;
   };
   std::map<double, Members> bins;
@@ -473,9 +471,10 @@ std::vector<Bin> average(const PlotSpec& plot, const Curve& curve,
         continue;
       }
       const bool has_y = std::isfinite(sample.y.front());
-      if (!has_y && trace.missing != Missing::nothing) ++bins[sample.x].missing[trace.missing];
+      const Missing why = trace.of_run.front().missing;
+      if (!has_y && why != Missing::nothing) ++bins[sample.x].missing[why];
       // A run without y still counts in the means of the other columns.
-      if (has_y || trace.missing != Missing::nothing) own[sample.x].push_back(sample);
+      if (has_y || why != Missing::nothing) own[sample.x].push_back(sample);
     }
     for (const auto& [at, samples] : own) {
       if (samples.size() > 1 && by_cycle) {
@@ -499,7 +498,7 @@ std::vector<Bin> average(const PlotSpec& plot, const Curve& curve,
       if (what == Against::measure && !both) continue;
       bin.runs.push_back(trace.run);
       bin.values.push_back(std::move(values));
-      bin.above.push_back(&trace.above);
+      bin.of_runs.push_back(&trace.of_run);
     }
   }
   std::vector<Bin> found;
@@ -514,7 +513,7 @@ std::vector<Bin> average(const PlotSpec& plot, const Curve& curve,
     for (std::size_t k = 0; k < columns.size(); ++k) {
       std::vector<CensoredValue> values;
       for (std::size_t r = 0; r < members.runs.size(); ++r) {
-        const double above = (*members.above[r])[k];
+        const double above = (*members.of_runs[r])[k].above;
         values.push_back(
             {std::isnan(above) ? members.values[r][k + 1] : above, !std::isnan(above)});
       }
@@ -575,8 +574,7 @@ void adapt(Axis& axis, const std::string& label, bool log) {
 Axis x_axis(const PlotSpec& plot, std::span<const Selected> runs) {
   if (const Measure* y = find_curve(plot.y())) return named_axis(y->x, y->x_unit);
   if (!plot.x_symbol.empty()) {
-    return {.symbol = formula("$" + plot.x_symbol + "$"),
-            .unit = plot.x_unit.empty() ? Text() : Text(plot.x_unit)};
+    return {.symbol = formula("$" + plot.x_symbol + "$"), .unit = formula(plot.x_unit)};
   }
   if (!plot.x_unit.empty()) return named_axis(plot.x, plot.x_unit);
   const std::string_view word = word_for_cycle(runs);
@@ -755,7 +753,7 @@ std::string note_of(const Panel& panel, std::size_t with_value) {
   std::size_t censored = 0;
   for (const Curve& curve : panel.curves) {
     censored += static_cast<std::size_t>(std::ranges::count_if(
-        curve.traces, [](const Trace& trace) { return std::isfinite(trace.above.front()); }));
+        curve.traces, [](const Trace& trace) { return std::isfinite(trace.of_run[0].above); }));
   }
   std::string note;
   if (censored > 0) {

@@ -380,13 +380,10 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
   const std::vector<RegisteredManifest>& manifests = *collected.manifests;
   std::vector<Run> selected = runs_of(store, wanted, selection);
   collected.scale = last_scale(selected, manifests);
-  std::set<std::string> at_scale, elsewhere;  // names of experiments
-  std::erase_if(selected, [&](const Run& s) {
-    const bool is_at_scale = s.place.scale == collected.scale;
-    (is_at_scale ? at_scale : elsewhere).insert(s.place.experiment);
-    return !is_at_scale;
-  });
-  std::erase_if(elsewhere, [&](const std::string& name) { return at_scale.contains(name); });
+  std::set<std::string> elsewhere;  // experiments without a run at this scale
+  for (const Run& one : selected) elsewhere.insert(one.place.experiment);
+  std::erase_if(selected, [&](const Run& s) { return s.place.scale != collected.scale; });
+  for (const Run& one : selected) elsewhere.erase(one.place.experiment);
   if (!elsewhere.empty()) {
     collected.notes.push_back(fmt::format("left out: experiments without a run at scale {}: {}",
                                           scale_name(collected.scale), some_of(elsewhere)));
