@@ -392,11 +392,13 @@ TEST(OwnPlot, NamesTheStepsOfAStiffening) {
 TEST(OwnPlot, OfRunsThatEndBeforeItsCycleIsEmpty) {
   const std::vector<FrameRun> runs = {rising_run("still", 1, 3, 0)};
   for (const char* y : {"phi", "pair_correlation"}) {
-    const Table table =
-        plot_figure(
-            {.name = "own", .y = y, .x = "amplitude_rad", .show = Show::traces, .cycle = 99})
-            .make(runs)
-            .tables.at(0);
+    const Table table = plot_figure({.name = "own",
+                                     .columns = {{y}},
+                                     .x = "amplitude_rad",
+                                     .show = Show::traces,
+                                     .cycle = 99})
+                            .make(runs)
+                            .tables.at(0);
     EXPECT_TRUE(table.rows.empty() && table.chart.series.empty()) << y;
   }
 }

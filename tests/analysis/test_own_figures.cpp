@@ -427,7 +427,7 @@ TEST(OwnPlot, HasColumnsWithoutSpecialCharacters) {
         {"msd_1_cycle_d2", "msd_1_cycle_mean_d2", "msd 1 cycle", "d²"},
         {"shear_rate_per_s", "shear_rate_mean_per_s", "shear rate", "1/s"},
         {"raised_stiffness_N_per_m", "raised_stiffness_mean_N_per_m", "raised stiffness", "N/m"}}) {
-    const Table table = drawing_of({.name = "own", .y = measure});
+    const Table table = drawing_of({.name = "own", .columns = {{measure}}});
     EXPECT_EQ(table.columns.at(2), column);
     EXPECT_EQ(plain_text(table.chart.y.name), name);
     EXPECT_EQ(plain_text(table.chart.y.unit), unit);
