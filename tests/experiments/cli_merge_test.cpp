@@ -131,14 +131,18 @@ TEST_F(Split, PlanAndSubmitHaveTheSeedsOfRun) {
   EXPECT_EQ(json({"plan", "m.yaml", "--seeds", "9", "--seed", "7-9", "--json"}).at("runs"), 6);
   EXPECT_EQ(json({"plan", "m.yaml", "--seed", "2", "--variant", "fluid=cell", "--json"}).at("runs"),
             1);
+  EXPECT_EQ(json({"plan", "m.yaml", "--seed", "1-2, 2", "--json"}).at("runs"), 4)
+      << "each seed once";
   const nlohmann::json dry = json({"submit", "m.yaml", "--seed", "2,3", "--dry-run", "--json"});
   EXPECT_EQ(dry.at("tasks").size(), 2U) << "a packing for each seed";
   for (const char* seed : {"0", "a", "6-", "-6", "6-5", "1--2", "1.5", "1-99999999999", "7", "6-8",
-                           "18446744073709551616", "1,,2", "1,", ",1", ",", "", "1, 2"}) {
+                           "18446744073709551616", "1,,2", "1,", ",1", ",", ""}) {
     for (const char* command : {"plan", "run", "submit"}) {
       expect_refused({command, "m.yaml", std::string("--seed=") + seed}, {"seed"});
     }
   }
+  expect_refused({"plan", "m.yaml", "--seed", "1,6-5"},
+                 {"--seed: seeds: is not a range from a lower to a higher seed (got 6-5)"});
   expect_refused({"run", "m.yaml", "--seed", "6,7"},
                  {"m.yaml: seed: the manifest does not have this seed (got 7). The manifest has 1, "
                   "2, 3, 4, 5, 6"});
