@@ -61,7 +61,10 @@ std::string text_html(const Text& text) {
 std::string filled(const std::string& page, const nlohmann::json& values) {
   kainjow::mustache::mustache parsed(page);
   parsed.set_custom_escape([](const std::string& text) { return escape_html(text); });
-  std::string html = parsed.render(template_value(values));
+  kainjow::mustache::data data = template_value(values);
+  data["brief"] = kainjow::mustache::lambda2(
+      [](const std::string& text, const auto& render) { return render(text).substr(0, 12); });
+  std::string html = parsed.render(data);
   if (!parsed.is_valid()) throw std::logic_error("page.html: " + parsed.error_message());
   return html;
 }
