@@ -59,7 +59,6 @@ struct GrainScale {
   std::vector<std::string> classes = {};
   bool whole = false;         ///< values are integers
   double of_wall_grains = 0;  ///< the value that exports write for wall grains
-  double exact_to = 0;        ///< if not 0, reports keep values from 0 to this number in 16 bits
 };
 
 struct Measure {

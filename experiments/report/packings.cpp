@@ -36,13 +36,15 @@ void put(double share, bool wide, std::vector<std::byte>& bytes) {
   if (wide) bytes.push_back(static_cast<std::byte>(word >> 8U));
 }
 
-bool is_wide(const Measure& measure) {
-  return measure.scale.exact_to > 0;
+/// If the measure has 16 bits, the largest value that they hold; 0 for a measure with 8 bits.
+double exact_to(const Measure& measure) {
+  if (measure.name == "crystallite") return kSteps;
+  return measure.name == "phi_local" || measure.name == "q6" ? 1 : 0;
 }
 
 double share_of(double value, const GrainField& field) {
   const GrainScale& scale = field.measure->scale;
-  if (is_wide(*field.measure)) return value / scale.exact_to;
+  if (const double most = exact_to(*field.measure); most > 0) return value / most;
   if (!scale.classes.empty()) return value / 254;
   return scale.logarithmic ? std::log(value / field.low) / std::log(field.high / field.low)
                            : (value - field.low) / (field.high - field.low);
@@ -92,7 +94,7 @@ std::vector<ChosenRun> choose(const Store& store, const std::vector<std::string>
 void weigh(const Store& store, std::vector<ChosenRun>& runs, Packings& packings) {
   std::size_t bytes_per_grain = 0;
   for (const Measure* one : all_measures(MeasureKind::grains)) {
-    bytes_per_grain += is_wide(*one) ? 2 : 1;
+    bytes_per_grain += exact_to(*one) > 0 ? 2 : 1;
   }
   for (ChosenRun& run : runs) {
     while (!run.checkpoints.empty() && run.bytes == 0) {
@@ -181,7 +183,7 @@ std::vector<GrainField> make_fields(const Measures& measures, const GrainMeasure
 json describe(const GrainField& field) {
   const Measure& measure = *field.measure;
   json described = {
-      {"key", measure.name}, {"label", measure.words}, {"exact_to", measure.scale.exact_to}};
+      {"key", measure.name}, {"label", measure.words}, {"exact_to", exact_to(measure)}};
   if (!measure.scale.classes.empty()) {
     described["classes"] = measure.scale.classes;
   } else {
@@ -257,7 +259,7 @@ EncodedFrame encode_frame(const Checkpoint& checkpoint, const WallPose& pose,
   }
   for (const GrainField& field : fields) {
     for (const double value : field.value) {
-      put(share_of(value, field), is_wide(*field.measure), frame.bytes);
+      put(share_of(value, field), exact_to(*field.measure) > 0, frame.bytes);
     }
   }
   return frame;

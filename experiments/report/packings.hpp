@@ -48,11 +48,12 @@ std::vector<std::size_t> evenly(std::size_t size, std::size_t count);
 /// `bytes` holds the numbers of N grains and M wall grains, one array after the other:
 ///
 ///     x, y, z       N + M words each: coordinate = origin + step * word [d]; z within the period
-///     each field    N words if GrainScale::exact_to is not 0, else N bytes
+///     each field    N words for phi_local, q6 and crystallite; N bytes for any other measure
 ///
-/// Words are little-endian and have 16 bits. A word is 65534 value / exact_to, and a byte is the
-/// class or 254 (value - low) / (high - low). On a logarithmic scale, the logarithms of value, low
-/// and high are used. The largest word or byte means that the value is unknown.
+/// Words are little-endian and have 16 bits. A word is 65534 phi_local, 65534 q6 or the number of
+/// the crystallite (0 outside crystallites). A byte is the class or 254 (value - low) / (high -
+/// low). On a logarithmic scale, the logarithms of value, low and high are used. The largest word
+/// or byte means that the value is unknown.
 struct EncodedFrame {
   Eigen::Vector3d origin;
   Eigen::Vector3d step;  ///< the error of a coordinate is at most step / 2 [d]
