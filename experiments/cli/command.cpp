@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <boost/algorithm/string/classification.hpp>
+#include <boost/algorithm/string/split.hpp>
 #include <exception>
 #include <filesystem>
 #include <functional>
@@ -43,8 +45,9 @@ void add_variant_and_seed(CLI::App& command, std::vector<std::string>& variants,
       "KEY=V");
   const auto take = [&seeds](const std::vector<std::string>& lists) {
     for (const std::string& list : lists) {
-      for (const auto part : std::views::split(list, ',')) {
-        const auto more = read_seeds({part.begin(), part.end()}, "--seed");
+      std::vector<std::string> parts;
+      for (const std::string& part : boost::split(parts, list, boost::is_any_of(","))) {
+        const auto more = read_seeds(part, "--seed");
         seeds.insert(seeds.end(), more.begin(), more.end());
       }
     }
