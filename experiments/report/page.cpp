@@ -253,7 +253,7 @@ json stage_json(const RunLineage& stage) {
   }
   for (json& attempt : facts["attempts"]) {
     const Maker maker = maker_of(attempt["host"]);
-    attempt.update({{"maker", text_of(maker)}, {"flags", maker.flags}});
+    attempt.update({{"host", text_of(maker)}, {"flags", maker.flags}});
   }
   std::string checkpoints;
   for (const CheckpointHistory& c : stage.checkpoints) {
@@ -267,7 +267,7 @@ json stage_json(const RunLineage& stage) {
   facts.update({{"error", run.error},
                 {"state", name_of(run.state)},
                 {"members", members},
-                {"parameters", parameters.dump()},
+                {"resolved", parameters.dump()},
                 {"checkpoints", checkpoints},
                 {"count", counted(stage.checkpoints.size(), "checkpoint")}});
   return facts;
