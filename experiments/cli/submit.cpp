@@ -212,6 +212,11 @@ std::string check_sbatch(const std::string& text) {
 
 void add_job_options(CLI::App& command, SubmitOptions& options) {
   JobOptions& job = options.job;
+  // The options are read in this order, and sbatch uses the last of equal options.
+  command.add_option("--sbatch", job.sbatch, "Further option of sbatch, such as --sbatch=--mem=2G")
+      ->check(check_sbatch)
+      ->allow_extra_args(false)  // the next argument may be a manifest
+      ->type_name("OPTION");
   const auto pass_on = [&](const char* names, const char* option, const char* help) {
     const auto add = [&job, option](const std::string& value) {
       job.sbatch.push_back(option + value);
@@ -243,16 +248,6 @@ void add_job_options(CLI::App& command, SubmitOptions& options) {
       "A task writes checkpoints and queues itself again this many seconds before its time limit",
       "S", 10, 3600)
       ->capture_default_str();
-  const auto add_before = [&job](const std::vector<std::string>& more) {
-    job.sbatch.insert(job.sbatch.begin(), more.begin(),
-                      more.end());  // the last of equal ones counts
-  };
-  command
-      .add_option_function<std::vector<std::string>>(
-          "--sbatch", add_before, "Further option of sbatch, such as --sbatch=--mem=2G")
-      ->check(check_sbatch)
-      ->allow_extra_args(false)  // the next argument may be a manifest
-      ->type_name("OPTION");
   command.add_flag("--dry-run", options.dry_run,
                    "Show the jobs and tasks without submitting; needs no Slurm and writes nothing");
 }
