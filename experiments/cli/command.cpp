@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <boost/algorithm/string/classification.hpp>
+#include <boost/algorithm/string/split.hpp>
 #include <exception>
 #include <filesystem>
 #include <functional>
@@ -33,27 +35,6 @@ CLI::Option* add_each(CLI::App& command, const char* name, auto& values, const c
       ->allow_extra_args(false);
 }
 
-/// Adds the seeds of a list such as "6,8" or "6-9". Throws CLI::ValidationError if invalid.
-void add_seeds(const std::string& list, std::vector<std::uint64_t>& seeds) {
-  const auto refuse = [](const std::string& why) { throw CLI::ValidationError("--seed", why); };
-  for (std::size_t begin = 0; begin <= list.size();) {
-    const std::string part = list.substr(begin, list.find(',', begin) - begin);
-    begin += part.size() + 1;
-    const std::size_t dash = part.find('-');
-    const std::string first = part.substr(0, dash);
-    const std::string last = dash == std::string::npos ? first : part.substr(dash + 1);
-    for (const std::string& seed : {first, last}) {
-      if (std::string why = unfit(seed, std::uint64_t{1}, UINT64_MAX); !why.empty()) refuse(why);
-    }
-    const std::uint64_t low = std::stoull(first), high = std::stoull(last);
-    if (high < low || high - low >= ManifestLimits::runs) {
-      refuse(fmt::format("a range of seeds is LOWEST-HIGHEST and has at most {} seeds (got '{}')",
-                         ManifestLimits::runs, part));
-    }
-    for (std::uint64_t k = 0; k <= high - low; ++k) seeds.push_back(low + k);
-  }
-}
-
 void add_variant_and_seed(CLI::App& command, std::vector<std::string>& variants,
                           std::vector<std::uint64_t>& seeds) {
   add_each(
@@ -63,7 +44,13 @@ void add_variant_and_seed(CLI::App& command, std::vector<std::string>& variants,
       "values given for this key",
       "KEY=V");
   const auto take = [&seeds](const std::vector<std::string>& lists) {
-    for (const std::string& list : lists) add_seeds(list, seeds);
+    for (const std::string& list : lists) {
+      std::vector<std::string> parts;
+      for (const std::string& part : boost::split(parts, list, boost::is_any_of(","))) {
+        const auto more = read_seeds(part, "--seed");
+        seeds.insert(seeds.end(), more.begin(), more.end());
+      }
+    }
   };
   command
       .add_option_function<std::vector<std::string>>(

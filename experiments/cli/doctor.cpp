@@ -141,12 +141,8 @@ std::vector<Check> examine(const std::string& store, bool with_speed) {
   return found;
 }
 
-struct DoctorOptions {
-  bool no_speed = false;
-};
-
-void doctor(const DoctorOptions& options, Context& context) {
-  const std::vector<Check> findings = examine(context.store, !options.no_speed);
+void doctor(const bool& no_speed, Context& context) {
+  const std::vector<Check> findings = examine(context.store, !no_speed);
   const auto no_store = [](const Check& f) { return f.what == "writing" && f.state == "missing"; };
   if (std::ranges::any_of(findings, no_store)) fail(context, kOtherError);
   const auto facts = [](const Check& f) -> Facts {
@@ -166,9 +162,9 @@ void doctor(const DoctorOptions& options, Context& context) {
 }  // namespace
 
 void add_doctor(CLI::App& app, Context& context) {
-  const auto [command, options] =
+  const auto [command, no_speed] =
       add_command(app, context, "doctor", "Check this machine and measure its speed", doctor);
-  command->add_flag("--no-speed", options->no_speed, "Skip the speed measurement (5 seconds)");
+  command->add_flag("--no-speed", *no_speed, "Skip the speed measurement (5 seconds)");
   add_common_options(
       *command, context,
       "The exit code is 1 if the program cannot write to the folder given by --store.\n"

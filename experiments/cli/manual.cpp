@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <boost/algorithm/string/replace.hpp>
 
 #include "analysis/estimators.hpp"
 #include "analysis/figure.hpp"
@@ -36,13 +37,10 @@ std::string usage(const CLI::Option& option) {
 }
 
 /// Escapes text for a cell of a Markdown table.
-std::string cell(const std::string& text) {
-  std::string all;
-  for (const char c : text) {
-    if (c == '|') all += '\\';
-    all += c == '\n' ? ' ' : c;
-  }
-  return all;
+std::string cell(std::string text) {
+  boost::algorithm::replace_all(text, "|", "\\|");
+  boost::algorithm::replace_all(text, "\n", " ");
+  return text;
 }
 
 std::string manifest_reference() {

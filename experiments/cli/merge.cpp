@@ -2,8 +2,6 @@
 // `merge`: merges other stores into this one.
 #include <fmt/format.h>
 
-#include <set>
-
 #include "experiments/cli/command.hpp"
 #include "experiments/runner/audit.hpp"
 #include "provenance/words.hpp"
@@ -18,18 +16,6 @@ void merge(const std::vector<std::string>& sources, Context& context) {
     throw NotFound(fmt::format("'{}': this folder contains no store", source));
   }
   Store store(context.store, Access::create);
-  std::set<std::string> known;  // NewestRuns::notes of all stores before the merge
-  const auto add_known = [&](const Store& one) {
-    for (std::string& note : newest_runs(select_runs(one, {})).notes) known.insert(std::move(note));
-  };
-  add_known(store);
-  for (const std::string& source : sources) {
-    try {
-      add_known(Store(source, Access::read));
-    } catch (const std::exception&) {
-      // merge_stores() reports the error.
-    }
-  }
   std::vector<Finding> refused;
   const auto reports = merge_stores(store, {sources.begin(), sources.end()}, {}, &refused);
   for (const Finding& finding : refused) {
@@ -41,14 +27,6 @@ void merge(const std::vector<std::string>& sources, Context& context) {
     warn(context,
          fmt::format("{}: {} of pruned checkpoints {} missing", report.source,
                      counted(report.absent, "measure"), report.absent == 1 ? "is" : "are"));
-  }
-  const NewestRuns newest = newest_runs(select_runs(store, {}));
-  for (const std::string& note : std::set(newest.notes.begin(), newest.notes.end())) {
-    if (known.contains(note)) continue;
-    const bool older = newest.notes_on_older_versions.contains(note);
-    warn(context, note + (older ? ". To show all runs, run one manifest that lists all of them; "
-                                  "only missing runs are computed"
-                                : ""));
   }
   if (context.json) {
     const auto facts = [](const MergeReport& report) -> nlohmann::json {
@@ -80,8 +58,8 @@ void add_merge(CLI::App& app, Context& context) {
       R"(Before anything changes, checks the event chain of each source and every file to copy. Stops if
 two stores record different states of one run at the same step. The sources do not change, and
 merging a source again has no effect. If the stores have different versions of a manifest, figures
-show the version that was registered last, and this command names the runs that figures leave out.
-To show all runs, run one manifest that lists all of them; only missing runs are computed.
+show the version that was registered last, and `figures` names the runs that it leaves out. To show
+all runs, run one manifest that lists all of them; only missing runs are computed.
 Cached measures of a source are copied if recomputing three sampled checkpoints gives the same
 values. Lost or pruned files of this store are not restored: copy them, or use `regenerate`.
 Examples:

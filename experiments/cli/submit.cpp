@@ -148,21 +148,16 @@ void prepare(Store& store, const std::vector<Submission>& open, const std::vecto
 }
 
 void check_time(const JobOptions& job) {
-  if (job.time.empty()) return;
   const double needed = static_cast<double>(job.warn_seconds) + kWarningResolution;
-  const auto limit = slurm_seconds(job.time);
-  if (!limit) {
-    throw CLI::ValidationError(
-        "--time", fmt::format("'{}' is not a time limit of Slurm: write MINUTES, HH:MM:SS, "
-                              "DAYS-HH:MM:SS or UNLIMITED",
-                              printable(job.time)));
-  }
-  if (*limit <= needed) {
+  for (const std::string& option : job.sbatch) {
+    const double limit =
+        option.starts_with("--time=") ? slurm_seconds(option.substr(7)) : needed + 1;
+    if (limit > needed) continue;
     throw CLI::ValidationError(
         "--time", fmt::format("a limit of {} s leaves no time to compute, because Slurm can warn "
                               "a task as early as {} s before the limit; increase --time or reduce "
                               "--warn",
-                              *limit, needed));
+                              limit, needed));
   }
 }
 
@@ -212,17 +207,26 @@ std::string check_sbatch(const std::string& text) {
         "`submit` there.",
         printable(text), taken);
   }
-  return unfit_value(text);
+  return "";
 }
 
 void add_job_options(CLI::App& command, SubmitOptions& options) {
   JobOptions& job = options.job;
-  command.add_option("--partition,-p", job.partition, "Partition")->check(unfit_value);
-  command.add_option("--account,-A", job.account, "Account")->check(unfit_value);
-  command
-      .add_option("--time", job.time,
-                  "Time limit of a task; an unfinished task is restarted after the limit")
-      ->check(unfit_value)
+  // The options are read in this order, and sbatch uses the last of equal options.
+  command.add_option("--sbatch", job.sbatch, "Further option of sbatch, such as --sbatch=--mem=2G")
+      ->check(check_sbatch)
+      ->allow_extra_args(false)  // the next argument may be a manifest
+      ->type_name("OPTION");
+  const auto pass_on = [&](const char* names, const char* option, const char* help) {
+    const auto add = [&job, option](const std::string& value) {
+      job.sbatch.push_back(option + value);
+    };
+    return command.add_option_function<std::string>(names, add, help);
+  };
+  pass_on("--partition,-p", "--partition=", "Partition");
+  pass_on("--account,-A", "--account=", "Account");
+  pass_on("--time",
+          "--time=", "Time limit of a task; an unfinished task is restarted after the limit")
       ->type_name("HH:MM:SS");
   add_number(command, "--array-size", options.array_size,
              "Largest number of tasks (default: one per packing)", "K", 1, 100000);
@@ -244,10 +248,6 @@ void add_job_options(CLI::App& command, SubmitOptions& options) {
       "A task writes checkpoints and queues itself again this many seconds before its time limit",
       "S", 10, 3600)
       ->capture_default_str();
-  command.add_option("--sbatch", job.sbatch, "Further option of sbatch, such as --sbatch=--mem=2G")
-      ->check(check_sbatch)
-      ->allow_extra_args(false)  // the next argument may be a manifest
-      ->type_name("OPTION");
   command.add_flag("--dry-run", options.dry_run,
                    "Show the jobs and tasks without submitting; needs no Slurm and writes nothing");
 }

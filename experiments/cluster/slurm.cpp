@@ -71,16 +71,6 @@ std::string unfit_path(const fs::path& path) {
       printable(text), kLongest);
 }
 
-std::string unfit_value(std::string_view text) {
-  constexpr std::string_view kSafe =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-+.,:;/=@%*()[]|&!";
-  const bool safe = !text.empty() && text.find_first_not_of(kSafe) == text.npos;
-  if (safe && text.size() <= kLongest) return "";
-  return fmt::format(
-      "'{}' is not a value for Slurm; use one word of at most {} bytes, without spaces or quotes",
-      printable(text), kLongest);
-}
-
 std::string unfit_scratch(const std::string& text) {
   static const std::regex fit("(/|" + kVariable + ")([^$`]|" + kVariable + ")*");
   if (const std::string why = unfit_path(text); !why.empty()) return why;
@@ -114,20 +104,18 @@ fs::path scratch_here(const std::string& text) {
   throw UsageError(fmt::format("--scratch {}: '{}' is not an absolute path", text, folder));
 }
 
-std::optional<double> slurm_seconds(const std::string& time) {
+double slurm_seconds(const std::string& time) {
   static const std::regex form(R"((?:(\d+)-)?(\d+)(?::(\d+))?(?::(\d+))?)");
   std::smatch found;
   constexpr double no_limit = std::numeric_limits<double>::infinity();
-  if (lower(time) == "unlimited" || lower(time) == "infinite") return no_limit;
-  if (time.size() > kLongest || !std::regex_match(time, found, form)) return std::nullopt;
+  if (time.size() > kLongest || !std::regex_match(time, found, form)) return no_limit;
   // D-H, D-H:M and D-H:M:S have hours after the days. H:M:S begins with hours, but M and M:S begin
   // with minutes.
   double sum = 0, unit = found[1].matched || found[4].matched ? 3600 : 60;
   for (std::size_t part = 1; part <= 4; ++part) {
     if (!found[part].matched) continue;
-    const auto number = read_number<unsigned>(found.str(part));
-    if (!number) return std::nullopt;
-    sum += *number * (part == 1 ? 86400 : unit);
+    const double number = read_number<double>(found.str(part)).value_or(no_limit);
+    sum += number * (part == 1 ? 86400 : unit);
     if (part > 1) unit /= 60;
   }
   return sum == 0 ? no_limit : sum;
@@ -152,7 +140,8 @@ std::string queue_job(const Job& job, const fs::path& folder) {
   }
   if (sbatch.code == 0 && numbers.size() == 1) return numbers.front();
   // Either sbatch failed (perhaps after it queued the job), or it printed more than the job number.
-  const std::string failure = fmt::format("sbatch failed: {}", trimmed(sbatch.messages));
+  const std::string failure =
+      fmt::format("sbatch failed for job {}: {}", job.name, trimmed(sbatch.messages));
   std::string queue;
   try {
     const std::vector<QueuedTask> tasks = ask_queue({job.name});
@@ -160,7 +149,7 @@ std::string queue_job(const Job& job, const fs::path& folder) {
   } catch (const ProgramError& error) {
     queue = error.what();
   }
-  if (queue.empty() && sbatch.code != 0) throw ProgramError(failure);
+  if (queue.empty() && sbatch.code != 0) throw ProgramError(failure + "\nThe job is not queued");
   if (sbatch.code == 0 && !numbers.empty()) return numbers.back();
   throw MachineError(fmt::format(
       "{}, and {}. So it is not known whether the job {} is queued. The next `submit` looks for "

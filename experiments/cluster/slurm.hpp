@@ -7,17 +7,12 @@
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace shearcell {
 
 /// Why a path cannot be passed to Slurm (too long, a backslash, a control character); "" if it can.
 std::string unfit_path(const std::filesystem::path& path);
-
-/// Why the text cannot be the value of an option of sbatch (too long, or a character that a shell
-/// or sbatch would interpret); "" if it can.
-std::string unfit_value(std::string_view text);
 
 /// Why the text cannot name a folder on each node's own disk; "" if it can. The text must be an
 /// absolute path. It may contain environment variables of the node, as in "$TMPDIR/x" or
@@ -29,8 +24,8 @@ std::string unfit_scratch(const std::string& text);
 std::filesystem::path scratch_here(const std::string& text);
 
 /// Converts a time limit to seconds: "MM", "MM:SS", "HH:MM:SS", "D-HH", "D-HH:MM" or "D-HH:MM:SS".
-/// Infinity for "UNLIMITED", "INFINITE" and 0 (no limit). Empty for other texts.
-std::optional<double> slurm_seconds(const std::string& time);
+/// Infinity for 0 (no limit) and for all other texts, such as "UNLIMITED".
+double slurm_seconds(const std::string& time);
 
 struct Job {
   std::string name;                  ///< name in the queue

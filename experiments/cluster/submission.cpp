@@ -84,11 +84,6 @@ Job complete(Job job, const JobOptions& options, const fs::path& folder, const s
   };
   words = {"sbatch", "--parsable", "--export=ALL"};
   append(options.sbatch);
-  for (const auto& [option, value] : {std::pair("--partition=", &options.partition),
-                                      {"--account=", &options.account},
-                                      {"--time=", &options.time}}) {
-    if (!value->empty()) words.push_back(option + *value);
-  }
   append(std::vector<std::string>{
       "--nodes=1", "--ntasks=1", "--requeue", "--open-mode=append", "--job-name=" + job.name,
       "--output=" + boost::replace_all_copy(folder.string(), "%", "%%") + "/" + log});  // %a works

@@ -39,15 +39,11 @@ std::vector<Share> shares_of(const std::vector<Plan>& plans, const Store* store)
 /// core time so far. No new share is empty. The same input gives the same new shares.
 std::vector<Share> share_out(std::vector<Share> packings, std::size_t tasks);
 
-/// Options for Slurm. Empty texts leave the choice to the cluster.
 struct JobOptions {
-  std::string partition;
-  std::string account;
-  std::string time;                 ///< time limit of a task, in Slurm's format
   std::size_t cpus = 0;             ///< cores of a task; 0 if not chosen yet
   std::size_t threads = 1;          ///< threads of each run
   std::size_t warn_seconds = 120;   ///< time between Slurm's warning and the limit
-  std::vector<std::string> sbatch;  ///< further options, such as "--qos=long"
+  std::vector<std::string> sbatch;  ///< options of sbatch, such as "--partition=long"
   std::string scratch;              ///< see unfit_scratch()
 };
 

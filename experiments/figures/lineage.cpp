@@ -123,27 +123,6 @@ json checkpoint_json(const std::string& sha256, const RunLineage& run) {
           {"pruned", known->record.state == CheckpointState::pruned}};
 }
 
-json stage_json(const RunLineage& stage) {
-  json attempts = json::array();
-  for (const Attempt& attempt : stage.attempts) {
-    attempts.push_back(
-        {{"attempt", attempts.size() + 1},
-         {"event", attempt.seq},
-         {"started_at", attempt.started_at},
-         {"ended_at", attempt.ended_at},
-         {"outcome", name_of(attempt.outcome)},
-         {"why", attempt.why},
-         {"host", attempt.host},
-         {"from", {{"run", attempt.from_run}, {"checkpoint", attempt.from_checkpoint}}}});
-  }
-  return {{"run", stage.stage.id},
-          {"kind", stage.stage.kind},
-          {"parent", stage.stage.parent},
-          {"grains", stage.stage.grains},
-          {"resolved", stage.stage.resolved},
-          {"attempts", attempts}};
-}
-
 // The outputs in a record, as file name -> SHA-256. The record may be malformed.
 std::map<std::string, std::string> outputs_of(const json& provenance) {
   std::map<std::string, std::string> outputs;
@@ -249,6 +228,27 @@ FigureLineage figure_lineage(const Store& store, const FigureRecord& record) {
   return lineage;
 }
 
+json to_json(const RunLineage& stage) {
+  json attempts = json::array();
+  for (const Attempt& attempt : stage.attempts) {
+    attempts.push_back(
+        {{"attempt", attempts.size() + 1},
+         {"event", attempt.seq},
+         {"started_at", attempt.started_at},
+         {"ended_at", attempt.ended_at},
+         {"outcome", name_of(attempt.outcome)},
+         {"why", attempt.why},
+         {"host", attempt.host},
+         {"from", {{"run", attempt.from_run}, {"checkpoint", attempt.from_checkpoint}}}});
+  }
+  return {{"run", stage.stage.id},
+          {"kind", stage.stage.kind},
+          {"parent", stage.stage.parent},
+          {"grains", stage.stage.grains},
+          {"resolved", stage.stage.resolved},
+          {"attempts", attempts}};
+}
+
 json to_json(const FigureLineage& lineage) {
   json manifests = json::array(), inputs = json::array(), stages = json::array();
   for (const ManifestText& m : lineage.manifests) {
@@ -277,7 +277,7 @@ json to_json(const FigureLineage& lineage) {
                       {"fault", input.fault},
                       {"checkpoints", checkpoints}});
   }
-  for (const auto& [id, stage] : lineage.runs) stages.push_back(stage_json(stage));
+  for (const auto& [id, stage] : lineage.runs) stages.push_back(to_json(stage));
   return {{"figure", figure_name(lineage.record)},
           {"experiment", member_of(lineage.record.provenance, "experiment")},
           {"event", lineage.record.seq},

@@ -84,6 +84,7 @@ std::vector<FigureRecord> figure_records(const Store& store);
 /// of a hash of the states.
 FigureLineage figure_lineage(const Store& store, const FigureRecord& record);
 
+nlohmann::json to_json(const RunLineage& stage);
 nlohmann::json to_json(const FigureLineage& lineage);
 
 /// A file on disk that is listed in the record of a figure.

@@ -196,7 +196,6 @@ NewestRuns newest_runs(std::vector<Run> selected) {
         some_of(std::set<std::string>(variants.begin(), variants.end())),
         counted(static_cast<std::size_t>(count), "run"),
         shown == chosen.runs.end() ? "" : fmt::format(", {:.8}", shown->place.manifest)));
-    chosen.notes_on_older_versions.insert(chosen.notes.back());
   }
   return chosen;
 }

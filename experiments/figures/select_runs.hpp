@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -31,8 +30,6 @@ std::vector<Run> select_runs(const Store& store, const RunSelection& selection);
 struct NewestRuns {
   std::vector<Run> runs;           ///< sorted by experiment, scale, variant and seed
   std::vector<std::string> notes;  ///< runs that are left out, or shown without their last cycles
-  /// Those of `notes` that report left-out runs of older manifest versions.
-  std::set<std::string> notes_on_older_versions;
 };
 
 /// Returns the runs that figures and tables show. These are, for each experiment and scale, the

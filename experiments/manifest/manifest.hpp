@@ -242,6 +242,10 @@ std::string manifest_markdown();
 /// claims may have the names of figures of the supplement. Throws ManifestError with all problems.
 Manifest read_manifest(std::string_view text, std::string_view file, bool shipped = false);
 
+/// The seeds of a text such as "6" or "6-9". `option`: name of the text for messages. Throws
+/// ManifestError.
+std::vector<std::uint64_t> read_seeds(const std::string& text, std::string_view option);
+
 /// Reads the text of a manifest in a store. Returns an empty manifest, without even a name, if this
 /// version of the program cannot read the text.
 Manifest recorded_manifest(std::string_view text);

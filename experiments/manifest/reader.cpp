@@ -1367,6 +1367,16 @@ Manifest read_manifest(string_view text, string_view file, bool shipped) {
   return manifest;
 }
 
+std::vector<std::uint64_t> read_seeds(const string& text, string_view option) {
+  const Node list{.kind = Node::Kind::list,
+                  .parts = {{.kind = Node::Kind::scalar, .text = text, .path = "seeds"}}};
+  ProblemList problems(option);
+  Seeds seeds;
+  Reader{problems, list, {}}.read(list, {}, seeds);
+  problems.raise();
+  return seeds.values;
+}
+
 namespace {
 
 string takes_markdown(const Field& key) {

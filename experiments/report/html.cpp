@@ -1,27 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/report/html.hpp"
 
+#include <fmt/format.h>
 #include <openssl/evp.h>
 
 #include <kainjow/mustache.hpp>
-#include <map>
 #include <stdexcept>
 
 #include "experiments/manifest/document.hpp"
 
 namespace shearcell {
 namespace {
-
-using Escapes = std::map<char, std::string_view>;
-
-std::string escaped(const std::string& text, const Escapes& escapes) {
-  std::string result;
-  for (const char c : text) {
-    const auto escape = escapes.find(c);
-    result += escape == escapes.end() ? std::string_view(&c, 1) : escape->second;
-  }
-  return result;
-}
 
 kainjow::mustache::data template_value(const nlohmann::json& value) {
   using kainjow::mustache::data;
@@ -44,9 +33,7 @@ kainjow::mustache::data template_value(const nlohmann::json& value) {
 }  // namespace
 
 std::string escape_html(std::string_view text) {
-  static const Escapes escapes = {
-      {'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\'', "&#39;"}};
-  return escaped(for_terminal(text), escapes);
+  return kainjow::mustache::html_escape(for_terminal(text));
 }
 
 std::string text_html(const Text& text) {
@@ -61,15 +48,21 @@ std::string text_html(const Text& text) {
 std::string filled(const std::string& page, const nlohmann::json& values) {
   kainjow::mustache::mustache parsed(page);
   parsed.set_custom_escape([](const std::string& text) { return escape_html(text); });
-  std::string html = parsed.render(template_value(values));
+  kainjow::mustache::data data = template_value(values);
+  data["brief"] = kainjow::mustache::lambda2(
+      [](const std::string& text, const auto& render) { return render(text).substr(0, 12); });
+  std::string html = parsed.render(data);
   if (!parsed.is_valid()) throw std::logic_error("page.html: " + parsed.error_message());
   return html;
 }
 
 std::string script_json(const nlohmann::json& value) {
+  std::string text;
   // In JSON these characters occur only in strings, where an escape has the same meaning.
-  static const Escapes escapes = {{'<', "\\u003c"}, {'>', "\\u003e"}, {'&', "\\u0026"}};
-  return escaped(value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace), escapes);
+  for (const char c : value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)) {
+    text += c == '<' || c == '>' || c == '&' ? fmt::format("\\u{:04x}", c) : std::string(1, c);
+  }
+  return text;
 }
 
 std::string base64(std::span<const std::byte> bytes) {

@@ -21,8 +21,9 @@ std::string text_html(const Text& text);
 /// Fills the Mustache template `page` with these values. escape_html() escapes values in double
 /// braces; values in triple braces are markup. A section is shown once if its value is true, a
 /// number, an object or a text that is not empty. A section whose value is an array is shown for
-/// each item. A name that the innermost object lacks is looked up in the objects around it. Throws
-/// std::logic_error for a malformed template.
+/// each item. A name that the innermost object lacks is looked up in the objects around it. The
+/// section `brief` shows its first 12 characters, such as those of an id. Throws std::logic_error
+/// for a malformed template.
 std::string filled(const std::string& page, const nlohmann::json& values);
 
 /// Returns JSON for a <script> element. The JSON contains no '<', '>' or '&', so that no text can

@@ -25,26 +25,29 @@ namespace {
 using nlohmann::json;
 using namespace nlohmann::literals;
 
-constexpr double largest_word = 65535;
+constexpr double kSteps = 65534;  // of 16 bits; the word 65535 means unknown
 
-void put_word(double value, std::vector<std::byte>& bytes) {
-  const auto word = static_cast<std::uint32_t>(std::lround(std::clamp(value, 0.0, largest_word)));
+/// Appends a share from 0 to 1 in 16 or 8 bits. The largest number means unknown.
+void put(double share, bool wide, std::vector<std::byte>& bytes) {
+  const double most = wide ? kSteps : 254;
+  const double number = std::isnan(share) ? most + 1 : most * std::clamp(share, 0.0, 1.0);
+  const auto word = static_cast<std::uint32_t>(std::lround(number));
   bytes.push_back(static_cast<std::byte>(word & 0xFFU));
-  bytes.push_back(static_cast<std::byte>(word >> 8U));
+  if (wide) bytes.push_back(static_cast<std::byte>(word >> 8U));
 }
 
-std::byte byte_of(const GrainField& field, double value) {
-  constexpr double most = 254;
-  constexpr auto unknown = std::byte{255};
-  if (std::isnan(value)) return unknown;
-  if (!field.measure->scale.classes.empty()) {
-    return static_cast<std::byte>(static_cast<unsigned>(value));
-  }
-  double share = (value - field.low) / (field.high - field.low);
-  if (field.measure->scale.logarithmic)
-    share = std::log(value / field.low) / std::log(field.high / field.low);
-  if (std::isnan(share)) return unknown;
-  return static_cast<std::byte>(std::lround(most * std::clamp(share, 0.0, 1.0)));
+/// If the measure has 16 bits, the largest value that they hold; 0 for a measure with 8 bits.
+double exact_to(const Measure& measure) {
+  if (measure.name == "crystallite") return kSteps;
+  return measure.name == "phi_local" || measure.name == "q6" ? 1 : 0;
+}
+
+double share_of(double value, const GrainField& field) {
+  const GrainScale& scale = field.measure->scale;
+  if (const double most = exact_to(*field.measure); most > 0) return value / most;
+  if (!scale.classes.empty()) return value / 254;
+  return scale.logarithmic ? std::log(value / field.low) / std::log(field.high / field.low)
+                           : (value - field.low) / (field.high - field.low);
 }
 
 /// Estimated size of the facts and profiles of a frame, as JSON [bytes].
@@ -86,23 +89,19 @@ std::vector<ChosenRun> choose(const Store& store, const std::vector<std::string>
   return chosen;
 }
 
-/// Whether encode_frame() stores the measure in a separate array instead of a GrainField.
-bool has_more_digits(const Measure& measure) {
-  return measure.name == "phi_local" || measure.name == "q6" || measure.name == "structure" ||
-         measure.name == "crystallite";
-}
-
 /// Sets ChosenRun::wall_grains and ChosenRun::bytes from the run's newest readable checkpoint.
 /// Removes runs without a readable checkpoint.
 void weigh(const Store& store, std::vector<ChosenRun>& runs, Packings& packings) {
-  const auto all = all_measures(MeasureKind::grains);
-  const auto fields = static_cast<std::size_t>(
-      std::ranges::count_if(all, [](const Measure* one) { return !has_more_digits(*one); }));
+  std::size_t bytes_per_grain = 0;
+  for (const Measure* one : all_measures(MeasureKind::grains)) {
+    bytes_per_grain += exact_to(*one) > 0 ? 2 : 1;
+  }
   for (ChosenRun& run : runs) {
     while (!run.checkpoints.empty() && run.bytes == 0) {
       const auto read = [&](std::size_t) {
         run.wall_grains = store.load_checkpoint(run.checkpoints.back()).cell.wall_grains.size();
-        run.bytes = frame_size_in_page(run.stage.grains, run.wall_grains, fields) + kFactsInPage;
+        run.bytes =
+            frame_size_in_page(run.stage.grains, run.wall_grains, bytes_per_grain) + kFactsInPage;
       };
       packings += read_in_parallel(1, 1, read, {});
       if (run.bytes == 0) run.checkpoints.pop_back();
@@ -161,11 +160,10 @@ json facts_of(const PackingMeasures& measures, double theta) {
 }
 
 /// The packings of a run share their value ranges, so that their colours can be compared.
-std::vector<GrainField> make_fields(const Measures& measures, std::size_t grains,
+std::vector<GrainField> make_fields(const Measures& measures, const GrainMeasures& grains,
                                     const RunFacts& run) {
   std::vector<GrainField> fields;
   for (const Measure* measure : all_measures(MeasureKind::grains)) {
-    if (has_more_digits(*measure)) continue;
     GrainField& field = fields.emplace_back(GrainField{.measure = measure});
     const GrainScale& scale = measure->scale;
     double unit = 1;
@@ -173,16 +171,19 @@ std::vector<GrainField> make_fields(const Measures& measures, std::size_t grains
     if (!(unit > 0)) unit = 1e3;  // the record of the run is damaged
     field.low = scale.low * unit, field.high = scale.high * unit;
     const auto found = measures.of_grains.find(measure->name);
-    field.value =
-        found == measures.of_grains.end() ? std::vector(grains, std::nan("")) : found->second;
+    field.value = found == measures.of_grains.end() ? std::vector(grains.q6.size(), std::nan(""))
+                                                    : found->second;
+    if (measure->name != "structure") continue;
+    for (std::size_t i = 0; i < field.value.size(); ++i) field.value[i] += 4 * grains.interior[i];
   }
   return fields;
 }
 
-/// {"key", "label", "unit", "low", "high"} or {"key", "label", "classes"}.
+/// {"key", "label", "exact_to", "unit", "low", "high"} or {"key", "label", "exact_to", "classes"}.
 json describe(const GrainField& field) {
   const Measure& measure = *field.measure;
-  json described = {{"key", measure.name}, {"label", measure.words}};
+  json described = {
+      {"key", measure.name}, {"label", measure.words}, {"exact_to", exact_to(measure)}};
   if (!measure.scale.classes.empty()) {
     described["classes"] = measure.scale.classes;
   } else {
@@ -220,8 +221,8 @@ json make_frame(const CheckpointRecord& record, const MeasureSources& sources,
   const Measures measures =
       sources.measures_of(record, 1, checkpoint, analysis, enters_page, unread);
   const std::vector<GrainField> fields =
-      make_fields(measures, analysis.grains.q6.size(), sources.facts(record.run));
-  const EncodedFrame encoded = encode_frame(checkpoint, pose, analysis.grains, fields);
+      make_fields(measures, analysis.grains, sources.facts(record.run));
+  const EncodedFrame encoded = encode_frame(checkpoint, pose, fields);
   json described = json::array();
   for (const GrainField& field : fields) described.push_back(describe(field));
   return {{"name", frame_name(record)},
@@ -245,33 +246,28 @@ json make_frame(const CheckpointRecord& record, const MeasureSources& sources,
 }  // namespace
 
 EncodedFrame encode_frame(const Checkpoint& checkpoint, const WallPose& pose,
-                          const GrainMeasures& grains, std::span<const GrainField> fields) {
+                          std::span<const GrainField> fields) {
   const Eigen::Matrix3Xd position = wrapped_sites(checkpoint.cell, pose, checkpoint.state.position);
   EncodedFrame frame;
   frame.origin = position.rowwise().minCoeff();
-  frame.step = (position.rowwise().maxCoeff() - frame.origin) / largest_word;
+  const Eigen::Vector3d extent = position.rowwise().maxCoeff() - frame.origin;
+  frame.step = extent / kSteps;
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    const double step = frame.step[axis] > 0 ? frame.step[axis] : 1;
-    for (Eigen::Index i = 0; i < position.cols(); ++i) {
-      put_word((position(axis, i) - frame.origin[axis]) / step, frame.bytes);
+    for (const double place : position.row(axis)) {
+      put((place - frame.origin[axis]) / extent[axis], true, frame.bytes);
     }
   }
-  for (const double phi : grains.phi_local) put_word(phi * largest_word, frame.bytes);
-  for (const double q6 : grains.q6) put_word(q6 * largest_word, frame.bytes);
-  for (const std::int32_t label : grains.crystallite) put_word(label + 1.0, frame.bytes);
-  for (std::size_t i = 0; i < grains.structure.size(); ++i) {
-    const unsigned interior = grains.interior[i] != 0 ? 4 : 0;
-    frame.bytes.push_back(
-        static_cast<std::byte>(static_cast<unsigned>(grains.structure[i]) + interior));
-  }
   for (const GrainField& field : fields) {
-    for (const double value : field.value) frame.bytes.push_back(byte_of(field, value));
+    for (const double value : field.value) {
+      put(share_of(value, field), exact_to(*field.measure) > 0, frame.bytes);
+    }
   }
   return frame;
 }
 
-std::size_t frame_size_in_page(std::size_t grains, std::size_t wall_grains, std::size_t fields) {
-  const std::size_t bytes = 6 * (grains + wall_grains) + (7 + fields) * grains;
+std::size_t frame_size_in_page(std::size_t grains, std::size_t wall_grains,
+                               std::size_t bytes_per_grain) {
+  const std::size_t bytes = 6 * (grains + wall_grains) + bytes_per_grain * grains;
   return (bytes + 2) / 3 * 4;
 }
 

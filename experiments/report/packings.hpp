@@ -45,24 +45,23 @@ Packings collect_packings(const Store& store, const std::vector<std::string>& ex
 /// `count` is 1, returns the last index.
 std::vector<std::size_t> evenly(std::size_t size, std::size_t count);
 
-/// `bytes` holds arrays of little-endian 16-bit words, or of bytes, for N grains and M wall grains:
+/// `bytes` holds the numbers of N grains and M wall grains, one array after the other:
 ///
 ///     x, y, z       N + M words each: coordinate = origin + step * word [d]; z within the period
-///     phi_local     N words: phi_local = word / 65535
-///     q6            N words: q6 = word / 65535
-///     crystallite   N words: number of the crystallite, from 1 to 65535; 0 outside crystallites
-///     structure     N bytes: 0 disordered, 1 FCC, 2 HCP; 4 is added for interior grains
-///     each field    N bytes, see GrainField
+///     each field    N words for phi_local, q6 and crystallite; N bytes for any other measure
+///
+/// Words are little-endian and have 16 bits. A word is 65534 phi_local, 65534 q6 or the number of
+/// the crystallite (0 outside crystallites). A byte is the class or 254 (value - low) / (high -
+/// low). On a logarithmic scale, the logarithms of value, low and high are used. The largest word
+/// or byte means that the value is unknown.
 struct EncodedFrame {
   Eigen::Vector3d origin;
   Eigen::Vector3d step;  ///< the error of a coordinate is at most step / 2 [d]
   std::vector<std::byte> bytes;
 };
 
-/// A measure by which the page can colour the grains, in addition to the named arrays of
-/// EncodedFrame::bytes. Each grain has one byte: the class number, or
-/// 254 (value - low) / (high - low). On a logarithmic scale, the logarithms of value, low and high
-/// are used. The byte of an unknown value is 255.
+/// A measure by which the page can colour the grains. The colours range from `low` to `high`. In
+/// the field of `structure`, 4 is added to the class of interior grains.
 struct GrainField {
   const Measure* measure = nullptr;
   double low = 0, high = 0;
@@ -70,9 +69,10 @@ struct GrainField {
 };
 
 EncodedFrame encode_frame(const Checkpoint& checkpoint, const WallPose& pose,
-                          const GrainMeasures& grains, std::span<const GrainField> fields = {});
+                          std::span<const GrainField> fields);
 
-/// Size of an encoded frame in the page, in base64 [bytes].
-std::size_t frame_size_in_page(std::size_t grains, std::size_t wall_grains, std::size_t fields);
+/// Size of an encoded frame in the page, in base64 [bytes]. `bytes_per_grain`: of all fields.
+std::size_t frame_size_in_page(std::size_t grains, std::size_t wall_grains,
+                               std::size_t bytes_per_grain);
 
 }  // namespace shearcell

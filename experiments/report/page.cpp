@@ -80,11 +80,6 @@ std::string script_hash(std::string_view script) {
   return "sha256-" + base64(std::as_bytes(std::span(digest)));
 }
 
-/// The first 12 characters of an id. The page shows them and uses them in links.
-std::string brief(const std::string& id) {
-  return id.substr(0, 12);
-}
-
 /// "shearcell 0.1.0 (dd11cbe), GNU 12.2.0 Release; HOST, CPU, 4 cores, AVX-512".
 std::string text_of(const Maker& maker) {
   return fmt::format("{}; {}, {}", maker.program, maker.host, maker.machine);
@@ -164,11 +159,13 @@ std::optional<FigureRecord> recorded_as(const Store& store, const ComputedFigure
 
 json lineage_json(const FigureLineage& lineage, const ComputedFigure& figure, const json& panels,
                   const std::optional<FigureRecord>& recorded) {
+  json facts = to_json(lineage);
+  facts.erase("runs");
   std::set<std::string> makers;
   for (const auto& [id, stage] : lineage.runs) {
     for (const Attempt& attempt : stage.attempts) makers.insert(text_of(maker_of(attempt.host)));
   }
-  json outputs = json::array(), inputs = json::array(), manifests = json::array();
+  json outputs = json::array();
   for (const json& panel : panels) {
     const std::string file = panel.at("name").get<std::string>() + ".csv";
     const std::string sha256 = sha256_hex(panel.at("csv").get_ref<const std::string&>());
@@ -179,39 +176,28 @@ json lineage_json(const FigureLineage& lineage, const ComputedFigure& figure, co
     }
     outputs.push_back({{"file", file}, {"sha256", sha256}, {"found", found}});
   }
-  for (const ManifestText& manifest : lineage.manifests) {
-    manifests.push_back(
-        {{"brief", brief(manifest.sha256)}, {"path", manifest.path}, {"sha256", manifest.sha256}});
-  }
-  for (const FigureInput& input : lineage.inputs) {
-    const Cycles& cycles = input.states.cycles;
+  for (json& input : facts["inputs"]) {
     std::set<int> lines;
-    for (const ManifestLine& line : input.lines) lines.insert(line.line);
-    inputs.push_back(
-        {{"brief", brief(input.run)},
-         {"experiment", input.experiment},
-         {"variant", input.variant},
-         {"seed", input.seed},
-         {"checkpoints", input.checkpoints.size()},
-         {"cycles",
-          cycles.empty() ? "?" : fmt::format("{:g} to {:g}", cycles.front()[0], cycles.back()[1])},
-         {"lines", fmt::format("{}", fmt::join(lines, ", "))}});
+    for (const json& line : input["manifest_lines"]) lines.insert(line.at("line").get<int>());
+    input["lines"] = fmt::format("{}", fmt::join(lines, ", "));
+    const auto cycles = input["cycles"].get<Cycles>();
+    input["cycles"] =
+        cycles.empty() ? "?" : fmt::format("{:g} to {:g}", cycles.front()[0], cycles.back()[1]);
+    input["checkpoints"] = input["checkpoints"].size();
   }
   const std::string command = "shearcell figures " + figure.name;
-  return {{"scale", scale_name(lineage.scale)},
-          {"plots", lineage.plots},
-          {"amount", fmt::format("{}, {}; analysis version {}", counted(figure.runs, "run"),
-                                 counted(figure.checkpoints, "checkpoint"),
-                                 text_at(figure.lineage, "analysis_version"))},
-          {"makers", makers},
-          {"manifests", manifests},
-          {"outputs", outputs},
-          {"recorded",
-           recorded ? fmt::format("event {} of {}", recorded->seq, recorded->recorded_at) : ""},
-          {"command",
-           figure.experiment.empty() ? command : command + " --experiment " + figure.experiment},
-          {"record", lineage.record.name},
-          {"inputs", inputs}};
+  facts.update(
+      {{"amount",
+        fmt::format("{}, {}; analysis version {}", counted(figure.runs, "run"),
+                    counted(figure.checkpoints, "checkpoint"), text_at(facts, "analysis_version"))},
+       {"makers", makers},
+       {"outputs", outputs},
+       {"recorded",
+        recorded ? fmt::format("event {} of {}", recorded->seq, recorded->recorded_at) : ""},
+       {"command",
+        figure.experiment.empty() ? command : command + " --experiment " + figure.experiment},
+       {"record", lineage.record.name}});
+  return facts;
 }
 
 /// The figure as JSON. Adds to `content` the manifests, charts and notes of the figure, and
@@ -256,23 +242,18 @@ json figure_json(const WantedFigure& wanted, const ComputedFigure& figure, Conte
 
 json stage_json(const RunLineage& stage) {
   const Stage& run = stage.stage;
-  json members = json::array(), attempts = json::array();
+  json facts = to_json(stage);
+  json members = json::array();
   for (const Membership& m : run.memberships) {
     const Place& place = m.place;
     members.push_back(
-        {{"manifest", brief(place.manifest)},
+        {{"manifest", place.manifest},
          {"text", fmt::format("{}{}, {}, seed {}", place.experiment, at_scale(place.scale),
                               variant_in_words(place.variant), place.seed)}});
   }
-  for (const Attempt& attempt : stage.attempts) {
-    const Maker maker = maker_of(attempt.host);
-    attempts.push_back({{"what", fmt::format("Attempt {}, {}, {}: ", attempts.size() + 1,
-                                             attempt.started_at, name_of(attempt.outcome))},
-                        {"from_run", brief(attempt.from_run)},
-                        {"from_checkpoint", brief(attempt.from_checkpoint)},
-                        {"maker", text_of(maker)},
-                        {"flags", maker.flags},
-                        {"why", attempt.why}});
+  for (json& attempt : facts["attempts"]) {
+    const Maker maker = maker_of(attempt["host"]);
+    attempt.update({{"host", text_of(maker)}, {"flags", maker.flags}});
   }
   std::string checkpoints;
   for (const CheckpointHistory& c : stage.checkpoints) {
@@ -283,18 +264,13 @@ json stage_json(const RunLineage& stage) {
   if (parameters.contains("parameters")) {
     parameters["parameters"] = effective_parameters(run.resolved);
   }
-  return {{"id", run.id},
-          {"brief", brief(run.id)},
-          {"kind", run.kind},
-          {"grains", run.grains},
-          {"error", run.error},
-          {"state", name_of(run.state)},
-          {"members", members},
-          {"parent", brief(run.parent)},
-          {"attempts", attempts},
-          {"parameters", parameters.dump()},
-          {"checkpoints", checkpoints},
-          {"count", counted(stage.checkpoints.size(), "checkpoint")}};
+  facts.update({{"error", run.error},
+                {"state", name_of(run.state)},
+                {"members", members},
+                {"resolved", parameters.dump()},
+                {"checkpoints", checkpoints},
+                {"count", counted(stage.checkpoints.size(), "checkpoint")}});
+  return facts;
 }
 
 struct Count {
@@ -403,7 +379,6 @@ json cell_json(const Packings& packings, const TableColumn& column, const TableC
   json cell = {{"known", !value.is_null()}, {"value", text},  {"run", false},
                {"packed", false},           {"state", false}, {"text", ""}};
   if (column.name == "run") {
-    cell["brief"] = brief(text);
     cell["run"] = text.substr(0, 8);
     cell["packed"] =
         std::ranges::any_of(packings.runs, [&](const json& run) { return run.at("id") == value; });
@@ -445,7 +420,7 @@ json experiment_json(const Content& content, const Experiment& experiment) {
           {"verdict", verdict},
           {"claimed", !verdict.empty()},
           {"stage_count", experiment.runs.size()},
-          {"manifest", {{"brief", brief(manifest.sha256)}, {"path", manifest.path}}},
+          {"manifest", {{"sha256", manifest.sha256}, {"path", manifest.path}}},
           {"steps", workflow(content, experiment)},
           {"figures", experiment.figures},
           {"unmade", experiment.unmade},
@@ -624,16 +599,14 @@ json page_of(const Content& content, const Head& head) {
   json stages = json::array(), manifests = json::array();
   for (const auto& [id, stage] : content.runs) stages.push_back(stage_json(stage));
   for (const auto& [sha256, manifest] : content.manifests) {
-    manifests.push_back(
-        {{"brief", brief(sha256)}, {"path", manifest.path}, {"text", manifest.text}});
+    manifests.push_back({{"sha256", sha256}, {"path", manifest.path}, {"text", manifest.text}});
   }
   json facts = {
       {"store",
        std::filesystem::absolute(content.store.folder()).lexically_normal().filename().string()},
       {"counts", counts},
-      {"event", head.seq},
+      {"log_event", head.seq},
       {"log_head", head.hash},
-      {"log_brief", brief(head.hash)},
       {"version", maker_of(host_facts()).version},
       {"interactive", content.report.interactive},
       {"drawings_asked", !content.report.interactive && has_front_end()},

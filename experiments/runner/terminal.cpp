@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/runner/terminal.hpp"
 
-#include <locale.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
+#include <utf8proc.h>
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <cstdlib>
-#include <cwchar>
 #include <memory>
 #include <sstream>
 #include <vector>
@@ -23,22 +24,25 @@ std::string_view environment(const char* name) {
   return value == nullptr ? "" : value;
 }
 
-struct Character {
-  std::size_t bytes = 1;
-  std::size_t columns = 1;
+struct Extent {
+  std::size_t bytes = 0;
+  std::size_t columns = 0;
 };
 
-/// Size of the first character of a non-empty UTF-8 text. Does not depend on the program's locale.
-Character first_character(std::string_view text) {
-  static const locale_t utf8 = newlocale(LC_CTYPE_MASK, "C.UTF-8", nullptr);
-  const locale_t before = utf8 == nullptr ? nullptr : uselocale(utf8);
-  wchar_t character = 0;
-  std::mbstate_t state{};
-  const std::size_t bytes = std::mbrtowc(&character, text.data(), text.size(), &state);
-  const int columns = wcwidth(character);
-  if (before != nullptr) uselocale(before);
-  if (bytes == 0 || bytes > text.size()) return {};
-  return {bytes, columns < 0 ? 1 : static_cast<std::size_t>(columns)};
+/// Size of the longest beginning of a UTF-8 text that fits into `limit` columns. A byte that is not
+/// UTF-8 counts as one column.
+Extent fitting(std::string_view text, std::size_t limit) {
+  Extent size;
+  while (size.bytes < text.size()) {
+    const auto* rest = reinterpret_cast<const utf8proc_uint8_t*>(text.data()) + size.bytes;
+    utf8proc_int32_t character = 0;
+    const auto bytes = utf8proc_iterate(rest, std::ssize(text.substr(size.bytes)), &character);
+    const int columns = bytes > 0 ? utf8proc_charwidth(character) : 1;
+    if (static_cast<std::size_t>(columns) > limit - size.columns) break;
+    size.bytes += static_cast<std::size_t>(std::max<std::ptrdiff_t>(bytes, 1));
+    size.columns += static_cast<std::size_t>(columns);
+  }
+  return size;
 }
 
 }  // namespace
@@ -61,24 +65,11 @@ bool shows_colours(std::FILE* stream) {
 }
 
 std::size_t columns_of(std::string_view text) {
-  std::size_t columns = 0;
-  while (!text.empty()) {
-    const Character first = first_character(text);
-    columns += first.columns;
-    text.remove_prefix(first.bytes);
-  }
-  return columns;
+  return fitting(text, SIZE_MAX).columns;
 }
 
 std::string_view first_columns(std::string_view text, std::size_t count) {
-  std::size_t end = 0;
-  while (end < text.size()) {
-    const Character next = first_character(text.substr(end));
-    if (next.columns > count) break;
-    count -= next.columns;
-    end += next.bytes;
-  }
-  return text.substr(0, end);
+  return text.substr(0, fitting(text, count).bytes);
 }
 
 std::string filled(std::string_view help, std::size_t width) {

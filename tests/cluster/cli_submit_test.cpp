@@ -89,32 +89,33 @@ TEST_F(Submit, NamesARemedyWithoutSlurm) {
 }
 
 TEST_F(Submit, RejectsPathsThatSlurmWouldMisread) {
-  for (const Arguments& words : {Arguments{"--partition", "a b"},
-                                 Arguments{"--account", "x\n#SBATCH --uid=0"},
-                                 Arguments{"--time", "soon"},
-                                 Arguments{"--time", "2", "--warn", "90"},
-                                 Arguments{"--sbatch=qos"},
-                                 Arguments{"--sbatch=--wrap=a b"},
-                                 Arguments{"--engine", "slurm"},
-                                 Arguments{"--scratch", "/a\nb"},
-                                 Arguments{"--scratch", "~/x"},
-                                 Arguments{"--scratch", "$(rm -rf x)"},
-                                 Arguments{"--array-size", "0"},
-                                 Arguments{"--sbatch=--array=1-2"},
-                                 Arguments{"--sbatch=--arr=1"},
-                                 Arguments{"--sbatch=--clusters=b"},
-                                 Arguments{"--sbatch=--wait"},
-                                 Arguments{"--sbatch=--test-only"},
-                                 Arguments{"--sbatch=--wrap=x"},
-                                 Arguments{"--cpus-per-task", "-1"},
-                                 Arguments{"--time", std::string(60'000, '1')},
-                                 Arguments{"--account", std::string(60'000, 'a')},
-                                 Arguments{"--sbatch=" + std::string(60'000, 'a')}}) {
+  for (const Arguments& words :
+       {Arguments{"--time", "2", "--warn", "90"}, Arguments{"--sbatch=--time=2"},
+        Arguments{"--sbatch=qos"}, Arguments{"--sbatch=--wrap=a b"}, Arguments{"--engine", "slurm"},
+        Arguments{"--scratch", "/a\nb"}, Arguments{"--scratch", "~/x"},
+        Arguments{"--scratch", "$(rm -rf x)"}, Arguments{"--array-size", "0"},
+        Arguments{"--sbatch=--array=1-2"}, Arguments{"--sbatch=--arr=1"},
+        Arguments{"--sbatch=--clusters=b"}, Arguments{"--sbatch=--wait"},
+        Arguments{"--sbatch=--test-only"}, Arguments{"--sbatch=--wrap=x"},
+        Arguments{"--cpus-per-task", "-1"}, Arguments{"--sbatch=" + std::string(60'000, 'a')}}) {
     const Outcome refused = expect(2, joined({"submit", manifest_, "--dry-run"}, words));
     EXPECT_LT(refused.err.size(), 1000U);
   }
   expect(2, {"submit", manifest_, "--dry-run", "--time", "2"}, {"120 s leaves no time"});
   expect(0, {"submit", manifest_, "--dry-run", "--time", "0"}, {"--time=0"});
+}
+
+// sbatch itself refuses values that it does not know.
+TEST_F(Submit, GivesSbatchTheValuesOfTheUser) {
+  submitted({"--sbatch=--partition=x", "--time", "soon", "-p", "a b", "-A", "x\n#SBATCH --uid=0",
+             "--sbatch=--qos=low", "--sbatch=--comment="});
+  EXPECT_TRUE(has(words(),
+                  "--partition=x\n--qos=low\n--comment=\n--partition=a b\n"
+                  "--account=x\n#SBATCH --uid=0\n--time=soon\n--nodes=1\n"))
+      << words();
+  const std::string text(60'000, 'a');
+  expect(0, {"submit", manifest_, "--account", text, "--store", "long"});
+  EXPECT_TRUE(has(words(), "--account=" + text + "\n"));
 }
 
 TEST_F(Submit, QueuesBothJobsOnceAndRecordsThem) {
@@ -273,8 +274,11 @@ TEST_F(Submit, LeavesNothingOfARejectedSubmission) {
   program(
       "sbatch",
       "[ \"$1\" = --version ] && exit 0\necho 'sbatch: error: invalid partition' >&2; exit 1\n");
-  expect(1, {"submit", manifest_, "--partition", "none"}, {"invalid partition"});
+  expect(1, {"submit", manifest_, "--partition", "none"},
+         {"sbatch failed for job shearcell-", "invalid partition", "The job is not queued"});
   EXPECT_TRUE(fs::is_empty(path("shearcell-store/submissions")));
+  EXPECT_EQ(json({"status", "--json"}).at("submissions"), nlohmann::json::array());
+  expect(0, {"verify"});
   slurm_that_works();
   EXPECT_FALSE(json({"submit", manifest_, "--json"}).at("submission").is_null()) << "and goes on";
 }

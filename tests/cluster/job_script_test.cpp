@@ -60,15 +60,6 @@ TEST(Paths, ThatSlurmWouldMisreadAreRejected) {
       1);
 }
 
-TEST(Values, CannotEndADirective) {
-  for (const char* text : {"long", "a,b", "gpu:2", "--mem=4G", "user@host.org", "2-12:00:00"}) {
-    EXPECT_EQ(unfit_value(text), "");
-  }
-  for (const char* text : {"", "a b", "a\n#SBATCH --uid=0", "a'b", "a\"b", "$x", "`x`", "a\\"}) {
-    EXPECT_NE(unfit_value(text), "") << text;
-  }
-}
-
 TEST(Scratch, IsAnAbsolutePathThatMayHaveVariables) {
   for (const char* text :
        {"/scratch", "/", "/my scratch", "/it's", "/a\"b", "/a;b&c", "/~x", "/*", "$TMPDIR",
@@ -119,12 +110,10 @@ TEST(LongTexts, AreRefusedAndOverflowNoStack) {
     EXPECT_THROW(scratch_here(text), UsageError);
   }
   EXPECT_EQ(unfit_scratch("/" + a.substr(0, 900)), "");
-  for (const std::string& text : {ones, ones + "-1", "1-" + ones, "1:" + ones, ones + ":1:1", a}) {
-    EXPECT_FALSE(slurm_seconds(text));
-    EXPECT_TRUE(has(unfit_value(text), "at most 1000 bytes"));
-    EXPECT_LT(unfit_value(text).size(), 300U);
+  for (const std::string& text :
+       {ones, ones + "-1", "1-" + ones, "1:" + ones, ones + ":1:1", a, ones.substr(0, 1000)}) {
+    EXPECT_EQ(slurm_seconds(text), std::numeric_limits<double>::infinity());
   }
-  EXPECT_EQ(unfit_value(a.substr(0, 1000)), "");
 }
 
 TEST(Scratch, HasTheValuesOfVariablesHereAndRunsNothing) {
@@ -149,12 +138,9 @@ TEST(TimeLimit, IsReadAsBySlurm) {
   EXPECT_EQ(slurm_seconds("2-3"), (2 * 24 + 3) * 3600);
   EXPECT_EQ(slurm_seconds("2-3:04"), (2 * 24 + 3) * 3600 + 240);
   EXPECT_EQ(slurm_seconds("2-3:04:05"), (2 * 24 + 3) * 3600 + 245);
-  for (const char* text : {"0", "0:00", "UNLIMITED", "infinite"}) {
+  for (const char* text : {"0", "0:00", "UNLIMITED", "infinite", "", "-", "1-", "-1", "a", "1h",
+                           "1:2:3:4", "1.5", "1:", ":1"}) {
     EXPECT_EQ(slurm_seconds(text), std::numeric_limits<double>::infinity()) << text;
-  }
-  for (const char* text :
-       {"", "-", "1-", "-1", "a", "1h", "1:2:3:4", "1.5", "1:", ":1", "99999999999"}) {
-    EXPECT_FALSE(slurm_seconds(text)) << text;
   }
 }
 
@@ -296,20 +282,15 @@ TEST_F(JobScript, MergesTheOtherTasksIfOneCannotBeMerged) {
 // counts.
 TEST_F(JobScript, IsQueuedWithWordsThatNothingOverrides) {
   JobOptions options;
-  options.partition = "long";
-  options.account = "group";
-  options.time = "12:00:00";
   options.cpus = 4;
-  options.sbatch = {"--qos=low",     "--no-requeue",       "--time=1",
-                    "--partition=x", "--account=y",        "--open-mode=truncate",
-                    "--nodes=2",     "--ntasks=3",         "--cpus-per-task=9",
-                    "--job-name=z",  "--output=/dev/null", "--signal=KILL@10",
+  options.sbatch = {"--qos=low",    "--no-requeue",       "--open-mode=truncate",
+                    "--nodes=2",    "--ntasks=3",         "--cpus-per-task=9",
+                    "--job-name=z", "--output=/dev/null", "--signal=KILL@10",
                     "--export=NONE"};
   const Job array = array_job(submission_, "/s", options);
   const Job merging = merge_job(submission_, "/s", options, "17");
   const std::string folder = "/s/submissions/0123456789ab";
-  const std::vector<std::string> both = {"--partition=long",  "--account=group", "--time=12:00:00",
-                                         "--nodes=1",         "--ntasks=1",      "--requeue",
+  const std::vector<std::string> both = {"--nodes=1", "--ntasks=1", "--requeue",
                                          "--open-mode=append"};
   const auto expect_last = [](const Job& job, const std::vector<std::string>& words) {
     const auto file = std::ranges::find(job.command, job.file);

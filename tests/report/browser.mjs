@@ -308,11 +308,11 @@ const checks = {
     const choose = (part, value) => page.locator(`#packings [data-part="${part}"]`).selectOption(value);
     await changes("colour by q6", () => choose("colour", "q6"));
     await box.screenshot({path: join(shots, "packing-q6.png")});
-    await changes("colour by phi_local", () => choose("colour", "phi"));
+    await changes("colour by phi_local", () => choose("colour", "phi_local"));
     for (const field of ["lattice", "grain_pressure_Pa", "contacts", "displacement_d", "overlap"]) {
       await changes(`colour by ${field}`, () => choose("colour", field));
     }
-    await changes("colour by class", () => choose("colour", "class"));
+    await changes("colour by class", () => choose("colour", "structure"));
     await choose("profile", "phi");
     const profile = page.locator("#packings .profile");
     const line = await profile.locator(".scatterlayer .js-line").getAttribute("d");

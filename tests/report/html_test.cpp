@@ -12,7 +12,7 @@ namespace {
 
 TEST(Html, EscapesMarkupAndCharactersThatAPageMayNotHold) {
   EXPECT_EQ(escape_html("<a href=\"x\" id='y'>&amp;</a>"),
-            "&lt;a href=&quot;x&quot; id=&#39;y&#39;&gt;&amp;amp;&lt;/a&gt;");
+            "&lt;a href=&quot;x&quot; id=&apos;y&apos;&gt;&amp;amp;&lt;/a&gt;");
   EXPECT_EQ(escape_html("ϕ = 0.64,\nline"), "ϕ = 0.64,\nline");
   EXPECT_EQ(escape_html(std::string("a\0b\x1b\x7f", 5)), "a\\x00b\\x1b\\x7f");
   EXPECT_EQ(escape_html("cut \xCF"), "cut \\xcf");
@@ -27,6 +27,9 @@ TEST(Html, ATemplateEscapesTextsAndReadsNoTagInThem) {
   EXPECT_EQ(filled("{{text}}|{{{text}}}|{{#list}}{{.}},{{/list}}|{{^none}}none{{/none}}|{{count}}",
                    values),
             "&lt;b&gt;{{other}}&lt;/b&gt;|<b>{{other}}</b>|a,b&amp;,|none|0");
+  EXPECT_EQ(filled("{{#brief}}{{id}}{{/brief}}|{{#brief}}{{other}}{{/brief}}",
+                   {{"id", "0123456789abcdef"}, {"other", "<"}}),
+            "0123456789ab|&lt;");
   EXPECT_EQ(filled("{{#nothing}}x{{/nothing}}{{nothing}}", values), "");
   EXPECT_THROW(filled("{{#list}}", values), std::logic_error);
 }

@@ -166,7 +166,7 @@ TEST_F(ReportOfRuns, GivesTheFrontEndPlotsPackingsAndTraces) {
   const auto bytes = run.at("frames")[0].at("data").get<std::string>();
   EXPECT_EQ(bytes.size(), (6 * (grains + walls) + 13 * grains + 2) / 3 * 4);
   const auto& frame = run.at("frames")[0];
-  EXPECT_EQ(frame.at("fields").size(), 6U);
+  EXPECT_EQ(frame.at("fields").size(), 10U);
   EXPECT_TRUE(has(frame.at("facts").dump(), "% of the interior grains crystalline"));
   EXPECT_TRUE(frame.at("crystalline").is_number());
   EXPECT_EQ(frame.at("profiles").at("phi").size(), frame.at("profiles").at("height").size());

@@ -3,7 +3,6 @@
 // by Okabe and Ito; readers with any colour vision can distinguish them. Quantities have the colours of viridis.
 import {italic, plain, sub} from "./dom.js";
 
-export const structureNames = ["disordered", "FCC", "HCP"];
 const rgb = (hex) => [16, 8, 0].map((shift) => (hex >> shift) & 255);
 const classColours = [0xc9cdd3, 0x0072b2, 0xe69f00, 0x009e73].map(rgb);  // none, FCC, HCP, BCC
 const crystalliteColours =
@@ -11,31 +10,36 @@ const crystalliteColours =
 const small = rgb(0x8f98a3);  // crystallites beyond the palette
 const viridisStops =
   [0x440154, 0x46327e, 0x365c8d, 0x277f8e, 0x1fa187, 0x4ac16d, 0xa0da39, 0xfde725].map(rgb);
-const unknown = 255;
+const labels = {phi_local: [...italic("ϕ"), ...sub("local")], q6: [...italic("q"), ...sub("6")]};
 
-const labels = {phi: [...italic("ϕ"), ...sub("local")], q6: [...italic("q"), ...sub("6")]};
-
-// Lengths in grain diameters d. `position` has x, y, z of the grains and then of the wall grains.
+// Lengths in grain diameters d. `position` has x, y, z of the grains and then of the wall grains. `numbers` of a field
+// are described in packings.hpp.
 export function decodeFrame(frame, grains, wallGrains) {
   const bytes = Uint8Array.from(atob(frame.data), (c) => c.charCodeAt(0));
   const all = grains + wallGrains;
-  if (bytes.length !== 6 * all + (7 + frame.fields.length) * grains) {
-    throw new Error(`a packing of ${bytes.length} bytes does not have the size for ${all} spheres`);
-  }
-  const words = new Uint16Array(bytes.buffer, 0, 3 * all + 3 * grains);  // all browsers are little-endian
+  let read = 0;
+  const next = (count, wide) => {
+    const part = bytes.slice(read, read += wide ? 2 * count : count);
+    return wide ? new Uint16Array(part.buffer) : part;  // all browsers are little-endian
+  };
+  const words = next(3 * all, true);
   const position = Float32Array.from({length: 3 * all}, (_, n) =>
     frame.origin[n % 3] + frame.step[n % 3] * words[(n % 3) * all + Math.floor(n / 3)]);
-  const measure = (k) => words.subarray(3 * all + k * grains, 3 * all + (k + 1) * grains);
-  const [phi, q6] = [0, 1].map((k) => Float32Array.from(measure(k), (word) => word / 65535));
-  const crystallite = measure(2);  // 0: the grain is in no crystallite
-  const part = (k) => bytes.subarray(6 * all + (6 + k) * grains, 6 * all + (7 + k) * grains);
-  // A field has one byte for each grain: a class, or 254 (value - low) / (high - low), or 255 if the value is unknown.
-  const fields = Object.fromEntries(frame.fields.map((field, k) => [field.key, {...field, bytes: part(k + 1)}]));
-  const flags = part(0);
-  return {
-    fields, position, phi, q6, crystallite, structure: flags.map((flag) => flag & 3),
-    interior: flags.map((flag) => flag >> 2)
-  };
+  const fields = Object.fromEntries(frame.fields.map((field) =>
+    [field.key, {...field, numbers: next(grains, field.exact_to > 0)}]));
+  if (read !== bytes.length) {
+    throw new Error(`a packing of ${bytes.length} bytes does not have the size for ${all} spheres`);
+  }
+  const {structure, crystallite} = fields;
+  const interior = structure.numbers.map((flag) => flag >> 2);
+  structure.numbers = structure.numbers.map((flag) => flag & 3);
+  return {fields, position, interior, structure: structure.numbers, crystallite: crystallite.numbers};  // 0: in none
+}
+
+// The value of a grain, if the field has 16 bits; else the place of the value between the ends of the colours.
+export function valueOf({exact_to: exact, numbers}, i) {
+  const most = exact ? 65534 : 254;
+  return numbers[i] > most ? null : numbers[i] / most * (exact || 1);
 }
 
 // The number of grains in each crystallite, the largest first.
@@ -56,15 +60,14 @@ export function viridis(fraction) {
 // {colour, text}, with a `note` that says which grains are counted, or a `bar` with {label, low, high}.
 export function lookOf(grains, mode) {
   if (mode === "crystallite") return ofCrystallites(grains.crystallite);
-  if (mode === "phi") return ofQuantity(labels.phi, (i) => (grains.phi[i] - 0.55) / 0.19, "0.55", "0.74");
-  if (mode === "q6") return ofQuantity(labels.q6, (i) => (grains.q6[i] - 0.2) / 0.4, "0.2", "0.6");
   const field = grains.fields[mode];
-  if (!field) return ofClasses(grains.structure, structureNames);
-  if (field.classes) return ofClasses(field.bytes, field.classes);
+  const {label, unit, low, high, classes, numbers} = field;
+  if (classes) return ofClasses(numbers, classes);
   const end = (value) => `${Number(value.toPrecision(3))}`;
-  const share = (i) => field.bytes[i] === unknown ? null : field.bytes[i] / 254;
-  const look = ofQuantity(plain(field.label), share, end(field.low), `${end(field.high)} ${field.unit}`.trim());
-  if (field.bytes.some((byte) => byte !== unknown)) return look;
+  const place = (value) => field.exact_to && value !== null ? (value - low) / (high - low) : value;
+  const look = ofQuantity(labels[mode] ?? plain(label), (i) => place(valueOf(field, i)), end(low),
+    `${end(high)} ${unit}`.trim());
+  if (numbers.some((_, i) => valueOf(field, i) !== null)) return look;
   return {paint: look.paint, entries: [{colour: classColours[0], text: "unknown: no checkpoint one cycle earlier"}]};
 }
 

@@ -2,7 +2,7 @@
 // The viewer of packings shows one packing, or two packings side by side with one set of controls. Its elements come
 // from the templates viewer-parts and pane-parts (page.html), and are found by `data-part`.
 import {addOptions, coloursOf, element, extentOf, plain, save, written} from "./dom.js";
-import {crystalliteSizes, decodeFrame, lookOf, structureNames, viridis} from "./grains.js";
+import {crystalliteSizes, decodeFrame, lookOf, valueOf, viridis} from "./grains.js";
 import {Plot} from "./plot.js";
 import {PackingScene} from "./scene.js";
 
@@ -135,10 +135,11 @@ class Pane {
     const place = `at (${[0, 1, 2].map((axis) => frame.position[3 * i + axis].toFixed(2)).join(", ")}) d`;
     readout.textContent = `wall grain ${place}`;
     if (i >= packing.grains) return;
+    const {structure, phi_local: phi, q6} = frame.fields;
     const size = crystalliteSizes(frame.crystallite).get(frame.crystallite[i]);
     readout.replaceChildren(...written([
-      [`grain ${i}: ${structureNames[frame.structure[i]]}, `, ""], ["ϕ", "i"], ["local", "sub"],
-      [` = ${frame.phi[i].toFixed(4)}, `, ""], ["q", "i"], ["6", "sub"], [` = ${frame.q6[i].toFixed(4)}, ` +
+      [`grain ${i}: ${structure.classes[frame.structure[i]]}, `, ""], ["ϕ", "i"], ["local", "sub"],
+      [` = ${valueOf(phi, i).toFixed(4)}, `, ""], ["q", "i"], ["6", "sub"], [` = ${valueOf(q6, i).toFixed(4)}, ` +
         `${size ? `in a crystallite of ${size}` : "in no crystallite"}` +
         `${frame.interior[i] ? "" : ", near a wall"}, ${place}`, ""]
     ]));
@@ -156,7 +157,7 @@ export function showPacking(host, packing) {
     pane.show(packing);
     // If there are crystallites, disordered grains are drawn small, so that they do not hide the crystallites.
     pane.showCycle(last.cycle, {
-      colour: "class", profile: "none", disordered: last.crystalline > 5 ? 0.17 : 0.5, walls: true, box: true, axis: "none"
+      colour: "structure", profile: "none", disordered: last.crystalline > 5 ? 0.17 : 0.5, walls: true, box: true, axis: "none"
     });
   } catch {
     host.hidden = true;
@@ -181,8 +182,9 @@ export class Viewer {
     this.part("run").parentElement.hidden = count > 1;
     addOptions(this.part("run"), packings, ({experiment}) => experiment, ({label}) => label);
     // All packings of a page have the same fields.
+    const colours = this.part("colour");
     for (const {key, label} of packings[0].frames[0].fields) {
-      this.part("colour").append(new Option(label, key));
+      if (!colours.querySelector(`[value="${key}"]`)) colours.append(new Option(label, key));
     }
     const on = (name, event, action) => this.part(name).addEventListener(event, action);
     on("run", "change", () => this.showRuns([packings[Number(this.part("run").value)]]));
