@@ -902,7 +902,7 @@ struct Reader {
     for (const Node& part : settings_in(in)) {
       if (!read_parameter(part, settings)) {
         reject_unknown(part, names_of(schema()));
-      } else if (about.name == "settle" && !may_differ_in_settling(part.key)) {
+      } else if (about.name == "settle" && !find_field(part.key)->identity.settles) {
         reject_key(part, "cannot be set for the settling alone", "Set it in `base` or in a scale.");
       }
     }
