@@ -773,13 +773,13 @@ struct Reader {
     }
   }
 
-  // Reads a pair: the sides of a claim, the first and last cycle, or the ends of a window. If
-  // about.example is empty, reads one cycle (key `at_cycle`), which is both first and last.
+  // Reads a pair: the sides of a claim, the first and last cycle, or the ends of a window.
+  // `at_cycle` is both the first and the last cycle.
   template <class T>
   void read(const Node& in, const Field& about, std::array<T, 2>& both) {
     constexpr bool sides = std::is_same_v<T, json>, whole = std::is_integral_v<T>;
     const Field each = sides ? about : with_type<T>({.range = about.range});
-    if (about.example.empty()) {
+    if (about.name == "at_cycle") {
       read(in, each, both[0]);
       both[1] = both[0];
       return;
