@@ -103,13 +103,6 @@ bool pressure_lifts_column(const Parameters& p) {
   return shear_scene(p).pressure > column_weight(p);
 }
 
-bool may_differ_in_settling(std::string_view key) {
-  static constexpr std::string_view keys[] = {
-      "stiffness_N_per_m", "drag_kg_per_s",           "gravity_m_per_s2",         "pressure_Pa",
-      "pressure_at",       "wall_mass_grains_per_d2", "wall_drag_grains_per_d2_s"};
-  return std::ranges::find(keys, key) != std::end(keys);
-}
-
 bool takes_auto(std::string_view key) {
   return key == "steps_per_cycle" || key == "settle_time_step_s";
 }

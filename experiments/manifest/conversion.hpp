@@ -60,10 +60,6 @@ struct TimeStep {
 
 TimeStep time_step(const Parameters& parameters, double seconds);
 
-/// Whether `settle` may give the parameter another value while the packing settles: true for
-/// stiffness, drag, gravity, pressure, pressure_at, and the mass and drag of the moving wall.
-bool may_differ_in_settling(std::string_view key);
-
 /// True for steps_per_cycle and settle_time_step_s, which a manifest may set to `auto`.
 bool takes_auto(std::string_view key);
 

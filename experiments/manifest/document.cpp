@@ -83,175 +83,139 @@ std::string escaped(string_view text, std::size_t longest, bool (*escapes)(char3
   return result;
 }
 
-class TreeBuilder : public YAML::EventHandler {
+// Records the values of a document in their order. An alias repeats the values of its anchor.
+class Recorder : public YAML::EventHandler {
+  using Mark = YAML::Mark;
+  using Text = std::string;
+  using Anchor = YAML::anchor_t;
+  using Style = YAML::EmitterStyle::value;
+
  public:
-  explicit TreeBuilder(string_view file) : file_(file) {}
+  explicit Recorder(string_view file) : file_(file) {}
 
-  Node take() { return std::move(root_); }
+  // The recorded value at `next`, as a tree. Moves `next` past the value.
+  Node tree(std::size_t& next) {
+    const std::size_t end = next + values_[next].size;
+    Node node = std::move(values_[next++]);
+    std::set<std::string> keys;
+    while (next < end) {
+      const Value& key = values_[next];
+      const bool in_map = node.kind == Node::Kind::map;
+      Value& part = values_[in_map ? ++next : next];
+      part.key_at = node.key_at;
+      part.path = node.path;
+      if (in_map) {
+        const std::string name = printable(key.text);
+        if (!key.is_scalar()) refuse(file_, key.at, "", "a key must be a plain name", "", "");
+        if (!keys.insert(key.text).second) {
+          refuse(file_, key.at, name, "appears twice in one map", "",
+                 read_number<double>(name) ? kDecimalPoint : "Keep one of them.");
+        }
+        part.key = key.text;
+        part.key_at = key.at;
+        part.path += (node.path.empty() ? "" : ".") + name;
+        if (part.kind == Node::Kind::null) part.at = key.at;
+      }
+      node.parts.push_back(tree(next));
+    }
+    return node;
+  }
 
-  [[noreturn]] void refuse_reference(const YAML::Mark& mark) {
+  [[noreturn]] void refuse_reference(const Mark& mark) {
     refuse(file_, position(mark), "", "is neither an anchor nor an alias of an earlier anchor", "",
            "Write the value out, and quote a text that begins with & or *.");
   }
 
-  void OnDocumentStart(const YAML::Mark& mark) override {
-    if (started_) {
-      refuse(file_, position(mark), "", "a second YAML document begins", "",
-             "Write one manifest per file.");
-    }
-    started_ = true;
+  void OnDocumentStart(const Mark& mark) override {
+    if (values_.empty()) return;
+    refuse(file_, position(mark), "", "a second YAML document begins", "",
+           "Write one manifest per file.");
   }
   void OnDocumentEnd() override {}
-
-  void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
-    keep(anchor, add({.at = position(mark)}));
+  void OnNull(const Mark& mark, Anchor anchor) override {
+    start(Node::Kind::null, mark, "", anchor);
   }
-  // Adds a copy of the anchored value. The copy counts towards ManifestLimits like any other value.
-  void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
-    const auto known = anchored_.find(anchor);
-    if (known == anchored_.end()) refuse_reference(mark);  // an alias inside its own value
-    check_size(known->second, position(mark), open_.size());
-    add(known->second);
+  void OnScalar(const Mark& mark, const Text& tag, Anchor anchor, const Text& text) override {
+    start(Node::Kind::scalar, mark, tag, anchor, text);
   }
-
-  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
-                const std::string& value) override {
-    check_tag(mark, tag);
-    check_text(mark, value);
-    Node node{
-        .kind = Node::Kind::scalar, .at = position(mark), .text = value, .quoted = tag == "!"};
-    keep(anchor, node);
-    add(std::move(node));
+  void OnSequenceStart(const Mark& mark, const Text& tag, Anchor anchor, Style) override {
+    start(Node::Kind::list, mark, tag, anchor);
   }
-  void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
-                       YAML::EmitterStyle::value) override {
-    open(Node::Kind::list, mark, tag, anchor);
+  void OnSequenceEnd() override {
+    values_[open_.back()].size = values_.size() - open_.back();
+    open_.pop_back();
   }
-  void OnSequenceEnd() override { close(); }
-  void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
-                  YAML::EmitterStyle::value) override {
-    open(Node::Kind::map, mark, tag, anchor);
+  void OnMapStart(const Mark& mark, const Text& tag, Anchor anchor, Style) override {
+    start(Node::Kind::map, mark, tag, anchor);
   }
-  void OnMapEnd() override { close(); }
+  void OnMapEnd() override { OnSequenceEnd(); }
+  void OnAlias(const Mark& mark, Anchor anchor) override {
+    const std::size_t first = anchors_.at(anchor), size = values_[first].size;
+    if (size == 0) refuse_reference(mark);  // an alias inside its own value
+    for (std::size_t k = first; k < first + size; ++k) {
+      Value copy = values_[k];
+      copy.depth += open_.size() - values_[first].depth;
+      copied_ += copy.text.size();
+      add(std::move(copy), position(mark));
+    }
+  }
 
  private:
-  // A list or map that is being read.
-  struct Open {
-    Node& node;
-    YAML::anchor_t anchor;
-    std::set<std::string> keys = {};
-    bool awaits_value = false;
+  struct Value : Node {
+    std::size_t depth = 0;  // number of lists and maps around the value
+    std::size_t size = 1;   // number of values in it, itself included; 0 until its end is known
   };
 
-  void check_tag(const YAML::Mark& mark, const std::string& tag) {
-    if (tag == "?" || tag == "!" || tag.empty()) return;  // no tag was written
-    refuse(file_, position(mark), "", fmt::format("the tag {} is not supported", printable(tag)),
-           "", "Remove the tag. The key decides the type.");
+  void start(Node::Kind kind, const Mark& mark, const Text& tag, Anchor anchor,
+             const Text& text = "") {
+    const Position at = position(mark);
+    if (tag != "?" && tag != "!" && !tag.empty()) {
+      refuse(file_, at, "", fmt::format("the tag {} is not supported", printable(tag)), "",
+             "Remove the tag. The key decides the type.");
+    }
+    check_text(text, at);
+    if (anchor != 0) anchors_[anchor] = values_.size();
+    add({{.kind = kind, .at = at, .text = text, .quoted = tag == "!"}, open_.size()}, at);
+    if (kind != Node::Kind::list && kind != Node::Kind::map) return;
+    values_.back().size = 0;
+    open_.push_back(values_.size() - 1);
+  }
+
+  // `at`: the position of the value or, for a copy, of the alias.
+  void add(Value value, Position at) {
+    const bool nests = value.kind == Node::Kind::list || value.kind == Node::Kind::map;
+    const bool deep = nests && value.depth >= ManifestLimits::depth;
+    values_.push_back(std::move(value));
+    if (deep || values_.size() > ManifestLimits::nodes || copied_ > ManifestLimits::bytes) {
+      refuse(file_, at, "",
+             deep ? fmt::format("nested deeper than {} levels", ManifestLimits::depth)
+             : values_.size() > ManifestLimits::nodes
+                 ? fmt::format("holds more than {} values", ManifestLimits::nodes)
+                 : fmt::format("is larger than {} bytes after aliases are replaced",
+                               ManifestLimits::bytes),
+             "", "");
+    }
   }
 
   // Reports control characters and noncharacters, since texts are written to JSON, XML and
   // terminals. Escapes in double quotes can stand for any character, and yaml-cpp reads \_ and \N
   // as bytes that are not UTF-8.
-  void check_text(const YAML::Mark& mark, string_view text) {
+  void check_text(string_view text, Position at) {
     for (string_view rest = text; !rest.empty();) {
       const auto [length, c] = decode(rest);
       if (length == 0 || (is_control(c) && c != '\n') || is_noncharacter(c)) {
-        refuse(file_, position(mark), "", "holds an escape or a character that is not supported",
+        refuse(file_, at, "", "holds an escape or a character that is not supported",
                printable(text), "Remove it, or write the text in single quotes.");
       }
       rest.remove_prefix(length);
     }
   }
 
-  void open(Node::Kind kind, const YAML::Mark& mark, const std::string& tag,
-            YAML::anchor_t anchor) {
-    check_tag(mark, tag);
-    check_depth(position(mark), open_.size());
-    open_.push_back({add({.kind = kind, .at = position(mark)}), anchor});
-  }
-  void close() {
-    keep(open_.back().anchor, open_.back().node);
-    open_.pop_back();
-  }
-
-  // Keeps a copy of an anchored value for its aliases. `anchor` is 0 for a value without anchor.
-  void keep(YAML::anchor_t anchor, const Node& node) {
-    if (anchor == 0) return;
-    check_size(node, node.at, 0);
-    anchored_[anchor] = node;
-  }
-
-  // Counts the values and bytes of a copied node, and checks the limits. `depth`: number of lists
-  // and maps around the node.
-  void check_size(const Node& node, Position at, std::size_t depth) {
-    count_value(at);
-    copied_ += node.text.size() + node.key.size();
-    if (copied_ > ManifestLimits::bytes) {
-      refuse(
-          file_, at, "",
-          fmt::format("is larger than {} bytes after aliases are replaced", ManifestLimits::bytes),
-          "", "");
-    }
-    if (node.kind == Node::Kind::list || node.kind == Node::Kind::map) check_depth(at, depth);
-    for (const Node& part : node.parts) {
-      if (node.kind == Node::Kind::map) count_value(at);  // a key counts as a value
-      check_size(part, at, depth + 1);
-    }
-  }
-
-  void check_depth(Position at, std::size_t depth) {
-    if (depth < ManifestLimits::depth) return;
-    refuse(file_, at, "", fmt::format("nested deeper than {} levels", ManifestLimits::depth), "",
-           "");
-  }
-
-  void count_value(Position at) {
-    if (++nodes_ <= ManifestLimits::nodes) return;
-    refuse(file_, at, "", fmt::format("holds more than {} values", ManifestLimits::nodes), "", "");
-  }
-
-  // Adds an item, key or value to the innermost open list or map. The returned reference is valid
-  // until this list or map gets another item, key or value.
-  Node& add(Node node) {
-    count_value(node.at);
-    if (open_.empty()) return root_ = std::move(node);
-    auto& [parent, anchor, keys, awaits_value] = open_.back();
-    const bool is_key = parent.kind == Node::Kind::map && !awaits_value;
-    awaits_value = is_key;
-    if (is_key) {
-      if (node.kind != Node::Kind::scalar)
-        refuse(file_, node.at, "", "a key must be a plain name", "", "");
-      const std::string name = printable(node.text);
-      if (!keys.insert(node.text).second) {
-        refuse(file_, node.at, name, "appears twice in one map", "",
-               read_number<double>(name) ? kDecimalPoint : "Keep one of them.");
-      }
-      Node value{.at = node.at,  // an empty value is reported at its key
-                 .key = std::move(node.text),
-                 .key_at = node.at,
-                 .path = parent.path.empty() ? name : parent.path + '.' + name};
-      return parent.parts.emplace_back(std::move(value));
-    }
-    if (parent.kind == Node::Kind::list) {
-      node.key_at = parent.key_at;
-      node.path = parent.path;
-      return parent.parts.emplace_back(std::move(node));
-    }
-    Node& value = parent.parts.back();
-    if (node.kind == Node::Kind::null) return value;
-    node.key = std::move(value.key);
-    node.key_at = value.key_at;
-    node.path = std::move(value.path);
-    return value = std::move(node);
-  }
-
   std::string file_;
-  bool started_ = false;
-  std::size_t nodes_ = 0;
-  std::size_t copied_ = 0;  // bytes in copies of anchored values
-  std::vector<Open> open_;
-  std::map<YAML::anchor_t, Node> anchored_;
-  Node root_;
+  std::vector<Value> values_;
+  std::vector<std::size_t> open_;          // lists and maps whose end is not known
+  std::map<Anchor, std::size_t> anchors_;  // places in `values_`
+  std::size_t copied_ = 0;                 // bytes of text in copies
 };
 
 }  // namespace
@@ -284,25 +248,26 @@ Node read_document(string_view text, string_view file) {
   // yaml-cpp silently replaces bad bytes and stops reading at U+0004.
   check_characters(text, file, "A manifest is plain text.");
   std::istringstream stream{std::string(text)};
-  TreeBuilder builder(file);
+  Recorder recorder(file);
   try {
     YAML::Parser parser(stream);
-    if (!parser.HandleNextDocument(builder)) {
+    if (!parser.HandleNextDocument(recorder)) {
       refuse(file, {1, 1}, "", "the manifest is empty", "", "It needs at least `experiment`.");
     }
-    parser.HandleNextDocument(builder);
+    parser.HandleNextDocument(recorder);
   } catch (const YAML::Exception& error) {
     // The messages of yaml-cpp for anchors and aliases depend on its version.
     if (error.msg.find("anchor") != std::string::npos ||
         error.msg.find("alias") != std::string::npos) {
-      builder.refuse_reference(error.mark);
+      recorder.refuse_reference(error.mark);
     }
     refuse(
         file, position(error.mark), "", fmt::format("is not valid YAML: {}", error.msg), "",
         "Check the indentation (spaces, no tabs), the space after each colon, the quotes and the "
         "brackets, here and in the lines above.");
   }
-  return builder.take();
+  std::size_t first = 0;
+  return recorder.tree(first);
 }
 
 std::string printable(string_view text, std::size_t longest) {

@@ -153,11 +153,10 @@ Plan expand(const Manifest& manifest, const ExpandOptions& options) {
   if (options.cycles) {
     check_option(manifest, "cycles", *options.cycles, *find_field("cycles"));
     scale.settings["cycles"] = {*options.cycles, {}};
-    std::erase_if(scale.sweep.zip, [](const SweepAxis& axis) { return axis.key == "cycles"; });
   }
-  if (options.seeds) {
-    std::erase_if(scale.sweep.zip, [](const SweepAxis& axis) { return axis.key == "seeds"; });
-  }
+  std::erase_if(scale.sweep.zip, [&](const SweepAxis& axis) {
+    return (axis.key == "cycles" && options.cycles) || (axis.key == "seeds" && options.seeds);
+  });
   if (options.engine) set_engine(manifest, *options.engine, scale);
   const std::vector<std::uint64_t> seeds = choose_seeds(manifest, scale.seeds, options.seeds);
   if (variant_count(scale.sweep) > ManifestLimits::runs / seeds.size()) {

@@ -773,13 +773,13 @@ struct Reader {
     }
   }
 
-  // Reads a pair: the sides of a claim, the first and last cycle, or the ends of a window. If
-  // about.example is empty, reads one cycle (key `at_cycle`), which is both first and last.
+  // Reads a pair: the sides of a claim, the first and last cycle, or the ends of a window.
+  // `at_cycle` is both the first and the last cycle.
   template <class T>
   void read(const Node& in, const Field& about, std::array<T, 2>& both) {
     constexpr bool sides = std::is_same_v<T, json>, whole = std::is_integral_v<T>;
     const Field each = sides ? about : with_type<T>({.range = about.range});
-    if (about.example.empty()) {
+    if (about.name == "at_cycle") {
       read(in, each, both[0]);
       both[1] = both[0];
       return;
@@ -902,7 +902,7 @@ struct Reader {
     for (const Node& part : settings_in(in)) {
       if (!read_parameter(part, settings)) {
         reject_unknown(part, names_of(schema()));
-      } else if (about.name == "settle" && !may_differ_in_settling(part.key)) {
+      } else if (about.name == "settle" && !find_field(part.key)->identity.settles) {
         reject_key(part, "cannot be set for the settling alone", "Set it in `base` or in a scale.");
       }
     }

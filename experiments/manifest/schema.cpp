@@ -22,6 +22,7 @@ using nlohmann::json;
 using std::string_view;
 
 constexpr Identity kPrepare = {.stage = StageKind::prepare};
+constexpr Identity kSettling = {.stage = StageKind::prepare, .settles = true};
 constexpr Identity kShear = {.stage = StageKind::shear};
 constexpr Identity kStiffen = {.stage = StageKind::stiffen};
 constexpr Identity kNoKey = {};
@@ -101,19 +102,20 @@ std::span<const Field> schema() {
                        "mass of a grain (Table I)"),
       row<&P::diameter_m>("diameter_m", "d", "m", {kSmallest, 1e3}, kPrepare,
                           "diameter of a grain (Table I)"),
-      row<&P::stiffness_N_per_m>("stiffness_N_per_m", "k", "N/m", {kSmallest, 1e15}, kPrepare,
+      row<&P::stiffness_N_per_m>("stiffness_N_per_m", "k", "N/m", {kSmallest, 1e15}, kSettling,
                                  "spring constant of a contact (Table I)"),
-      row<&P::drag_kg_per_s>("drag_kg_per_s", "b", "kg/s", {0, 1e9}, kPrepare,
+      row<&P::drag_kg_per_s>("drag_kg_per_s", "b", "kg/s", {0, 1e9}, kSettling,
                              "Stokes drag constant (Table I)"),
       row<&P::fluid>("fluid", "", "", {}, kShear,
                      "fluid that drags the grains during shear: `still` is at rest, `cell` moves "
                      "like the walls at the same height (B.3, Eq. S5)"),
-      row<&P::gravity_m_per_s2>("gravity_m_per_s2", "g", "m/s^2", {0, 1e6}, kPrepare,
+      row<&P::gravity_m_per_s2>("gravity_m_per_s2", "g", "m/s^2", {0, 1e6}, kSettling,
                                 "gravitational acceleration (Table I); 0 turns it off (section D)"),
-      row<&P::pressure_Pa>("pressure_Pa", "P", "Pa", {kSmallest, 1e12}, kPrepare,
+      row<&P::pressure_Pa>("pressure_Pa", "P", "Pa", {kSmallest, 1e12}, kSettling,
                            "confining pressure (Table I); pressure_at says where it acts"),
       row<&P::pressure_at>(
-          "pressure_at", "", "", {}, {.stage = StageKind::prepare, .omitted_at = "moving_wall"},
+          "pressure_at", "", "", {},
+          {.stage = StageKind::prepare, .omitted_at = "moving_wall", .settles = true},
           "wall on which the pressure is P. With `moving_wall`, the load on the moving wall is P "
           "A_w. With `top`, the load on a moving bottom wall is P A_w plus the grains' weight. "
           "`moving_wall` and `top` are equivalent without gravity or with a moving top wall"),
@@ -139,9 +141,9 @@ std::span<const Field> schema() {
           "wall_grain_draw", "", "1", {0, 1e6}, {.stage = StageKind::prepare, .omitted_at = "0"},
           "each value gives other random positions of the wall grains for the same seed"),
       row<&P::wall_mass_grains_per_d2>("wall_mass_grains_per_d2", "", "m/d^2", above(0, 1e6),
-                                       kPrepare, "mass per area of the moving wall"),
+                                       kSettling, "mass per area of the moving wall"),
       row<&P::wall_drag_grains_per_d2_s>("wall_drag_grains_per_d2_s", "", "m/(d^2 s)", {0, 1e9},
-                                         kPrepare, "drag constant per area of the moving wall"),
+                                         kSettling, "drag constant per area of the moving wall"),
       // Preparation.
       row<&P::fill_packing_fraction>("fill_packing_fraction", "", "1", {1e-9, 0.35}, kPrepare,
                                      "volume fraction of the grains before they settle; they are "

@@ -32,6 +32,8 @@ struct Identity {
   /// True if the parameter selects the parent stage. Records then hold the id of the parent stage
   /// instead of the parameter.
   bool selects_parent = false;
+  bool settles =
+      false;  ///< `settle` may give another value, for the time while the packing settles
 
   /// Whether runs with different values of the parameter have different ids.
   bool distinguishes_runs() const { return stage && recorded_as.empty(); }
@@ -61,7 +63,7 @@ struct Field {
   std::span<const std::string_view> terms = {};  ///< names allowed in expressions; if empty, none
   std::string_view example = {};                 ///< as YAML
   bool required = false;
-  std::size_t longest = 0;  ///< maximum length of a free text [bytes]
+  std::size_t longest = 0;  ///< maximum length of a free text [bytes]; 0: the text is a name
   bool folds = false;       ///< the text may have several lines, which become one
   /// get() converts a parameter to JSON; set() reads it from valid JSON. Both are null if the
   /// key is not a parameter.

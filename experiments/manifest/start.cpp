@@ -45,7 +45,7 @@ void require_same_cell(const Manifest& manifest, const Scale& scale, const Varia
     const bool of_packing = field.identity.stage == StageKind::prepare &&
                             field.identity.distinguishes_runs() &&
                             !field.name.starts_with("settle_");
-    if (!of_packing || may_differ_in_settling(field.name)) continue;
+    if (!of_packing || field.identity.settles) continue;
     const nlohmann::json mine = field.get(variant.parameters), its = field.get(had);
     if (mine == its) continue;
     refuse(manifest.file, scale.start.at, std::string(field.name),
