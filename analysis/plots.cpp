@@ -163,7 +163,7 @@ struct Sample {
 
 struct Trace : Selected {
   std::vector<Sample> samples = {};    ///< in the order of the checkpoints
-  Missing missing = Missing::nothing;  ///< for a measure of the whole run: why y is missing
+  Missing missing = Missing::nothing;  ///< if y has one value per run: why y is missing
   /// For each column: the bound RunValue::above if the run ended before the event; otherwise NaN.
   std::vector<double> above = {};
 };
@@ -207,8 +207,8 @@ void evaluate(const PlotSpec& plot, std::span<const NumberColumn> columns, const
     }
   };
   for (const ColumnSpec& column : measures_of(plot)) {
-    const Measure* measure = find_measure(column.measure, MeasureKind::run);
-    const RunValue value = measure == nullptr ? RunValue{} : measure->of_run(*trace.run);
+    const bool of_run = is_of_run(column.measure) && is_measured_of_run(column.measure);
+    const RunValue value = of_run ? NumberColumn(column.measure).of_run(*trace.run) : RunValue{};
     if (trace.above.empty()) trace.missing = value.missing;
     trace.above.push_back(trace.partners.empty() ? value.above : std::nan(""));
   }
@@ -768,9 +768,8 @@ std::string note_of(const Panel& panel, std::size_t with_value) {
   }
   std::string note;
   if (censored > 0) {
-    add_note(note,
-             fmt::format("{} of {} runs end before {}; the means use their censored values",
-                         censored, runs, find_measure(panel.plot.y, MeasureKind::run)->reach));
+    add_note(note, fmt::format("{} of {} runs end before {}; the means use their censored values",
+                               censored, runs, reach_of(panel.plot.y)));
   }
   if (const std::size_t without = runs - with_value - censored; without > 0) {
     add_note(note, fmt::format("{} of {} runs have no value and are left out of the means", without,
