@@ -165,8 +165,7 @@ Verdict at_looks(const ClaimSpec& claim, Claim stated, const ClaimSides& sides,
   std::vector<std::size_t> looks = frame.looks;
   if (looks.empty()) looks = {seeds.size()};
   for (std::size_t& look : looks) look = std::min(look, seeds.size());
-  const auto repeated = std::ranges::unique(looks);
-  looks.erase(repeated.begin(), repeated.end());
+  looks.erase(std::unique(looks.begin(), looks.end()), looks.end());
   seeds.resize(looks.back());
   const auto first_pending =
       std::ranges::find_if(seeds, [&](std::uint64_t seed) { return pending.contains(seed); });

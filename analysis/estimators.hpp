@@ -64,12 +64,12 @@ extern const Estimator mean_over_cycles, mean_over_phi, number_of_the_run, chang
 bool compares_waits(const ClaimSpec& claim);
 
 /// Decides the claim from the mean of `a` minus the mean of `b`. A run of `a` and a run of `b` are
-/// a pair if they have the same packing. Pairs are compared by Student's t, and runs without a
-/// partner are left out. If there are no pairs, the interval is Welch's. Runs that end before an
-/// event are censored (censored.hpp). A verdict needs least_runs runs or pairs. In each group, at
-/// least three quarters of the runs must have a number from `scalar`. If there are pairs, at least
-/// three quarters of the packings of each group must be in a pair. Otherwise the runs that are left
-/// out could bias the verdict. [choice]
+/// a pair if they have the same packing. If is_enough() packings of each group are in a pair, the
+/// pairs are compared by Student's t, and runs without a partner are left out. Otherwise all runs
+/// are compared by Welch's test. The test ignores that values of one packing are correlated: if the
+/// correlation is positive, the interval is too wide. Runs that end before an event are censored
+/// (censored.hpp). A verdict needs least_runs runs or pairs, and is_enough() runs of each group
+/// must have a number from `scalar`. [choice]
 Verdict compare(const Claim& claim, const Scalar& scalar, RunGroup a, RunGroup b);
 
 /// Decides the claim from the mean over runs minus the published number.
@@ -83,10 +83,6 @@ std::vector<Waiting> waits_for_onset(RunGroup runs);
 /// lower bound RunValue::above. It holds NaN if neither the value nor the bound is known.
 CensoredValue censored_value(const RunValue& value);
 
-/// Averages `values` (one per run) over the runs of each packing. A mean is censored if one of the
-/// averaged values is censored. Values that are not finite are left out.
-std::vector<CensoredValue> over_packings(RunGroup runs, std::span<const CensoredValue> values);
-
 /// Whether at least three quarters of `all` runs, or packings, are used. The others could bias a
 /// verdict. [choice]
 constexpr bool is_enough(std::size_t used, std::size_t all) {
@@ -95,15 +91,32 @@ constexpr bool is_enough(std::size_t used, std::size_t all) {
 /// The note of a verdict without is_enough().
 inline constexpr const char* many_left_out = "more than a quarter of the runs are left out";
 
-/// For an estimator that needs a number from every run: counts the runs without a number. No run
-/// may be censored, and each group must have is_enough() numbers.
-struct NumbersOfRuns {
-  std::size_t runs = 0, censored = 0, missing = 0;
-  bool enough = true;
+/// An empty table for the numbers that enter a verdict. Its columns are `group` (the run's
+/// variant), `seed`, `packing`, and those in `columns`.
+Table entered_with(const std::vector<TableColumn>& columns);
+/// Adds a row for the run to `entered`. `values`: one for each column after column `packing`.
+void enter(const FrameRun& run, const TableRow& values, Table& entered);
 
-  /// The number of each run of the group.
-  std::vector<RunValue> take(const Scalar& scalar, RunGroup group);
-  /// Why the estimator cannot be used, for the verdict's note; "" if `enough` is true.
+/// Takes the numbers of runs, and counts the runs that have none.
+struct NumbersOfRuns {
+  Scalar scalar;
+  /// Converts the number of a run to the number that is compared, such as its logarithm.
+  std::function<double(double value)> converted = std::identity();
+  /// The number of each run. If a run is censored, there is a column `above`.
+  Table entered = entered_with({"value", "missing"});
+  std::size_t runs = 0, censored = 0;
+  std::size_t not_positive = 0;                 ///< runs whose value has no logarithm
+  std::map<Missing, std::size_t> missing = {};  ///< other runs without a number
+  bool enough = true;                           ///< is_enough() of each group have a number
+
+  /// Returns the number of the run, which is not finite if the run has none. `value`: its value
+  /// before conversion. Adds a row to `entered`; `more` are its cells before `value`.
+  CensoredValue take(const FrameRun& run, const RunValue& value, const TableRow& more = {});
+  /// Takes the numbers of all runs in the group, and returns the mean of each packing.
+  PackingMeans take(RunGroup group);
+  /// Adds to the note how many runs have no number, by reason.
+  void note_missing(std::string& note) const;
+  /// Why an estimator that cannot use censored runs cannot be used; "" if it can.
   std::string why_not() const;
 };
 
@@ -113,11 +126,5 @@ inline constexpr const char* no_group =
 
 /// The name of a column, for use in sentences: Measure::words, or the column's text.
 std::string words_of_column(const std::string& column);
-
-/// An empty table for the numbers that enter a verdict. Its columns are `group` (the run's
-/// variant), `seed`, `packing`, and those in `columns`.
-Table entered_with(const std::vector<TableColumn>& columns);
-/// Adds a row for the run to `entered`. `values`: one for each column after column `packing`.
-void enter(const FrameRun& run, const TableRow& values, Table& entered);
 
 }  // namespace shearcell

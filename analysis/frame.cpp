@@ -86,13 +86,34 @@ const std::string& packing_of(const FrameRun& run) {
   return run.packing.empty() ? run.stage.id : run.packing;
 }
 
-std::vector<double> over_packings(RunGroup runs, std::span<const double> values) {
+PackingMeans means_by_packing(RunGroup runs, std::span<const CensoredValue> values) {
   nlohmann::ordered_map<std::string, std::vector<double>> packings;
+  PackingMeans means;
   for (std::size_t k = 0; k < runs.size(); ++k) {
-    if (std::isfinite(values[k])) packings[packing_of(*runs[k])].push_back(values[k]);
+    if (!std::isfinite(values[k].value)) continue;
+    const std::string& packing = packing_of(*runs[k]);
+    packings[packing].push_back(values[k].value);
+    means[packing].censored |= values[k].censored;
   }
+  for (auto& [packing, mean] : means) mean.value = over_runs(packings.at(packing)).mean.value();
+  return means;
+}
+
+std::vector<CensoredValue> values_of(const PackingMeans& means) {
+  std::vector<CensoredValue> values;
+  for (const auto& [packing, mean] : means) values.push_back(mean);
+  return values;
+}
+
+std::vector<CensoredValue> over_packings(RunGroup runs, std::span<const CensoredValue> values) {
+  return values_of(means_by_packing(runs, values));
+}
+
+std::vector<double> over_packings(RunGroup runs, std::span<const double> values) {
+  std::vector<CensoredValue> observed;
+  for (const double value : values) observed.push_back({value});
   std::vector<double> means;
-  for (const auto& [packing, found] : packings) means.push_back(over_runs(found).mean.value());
+  for (const CensoredValue& mean : over_packings(runs, observed)) means.push_back(mean.value);
   return means;
 }
 
@@ -219,15 +240,57 @@ NumberColumn::NumberColumn(std::string text) : text_(std::move(text)) {
 }
 
 double NumberColumn::operator()(const FrameRun& run, const CheckpointMeasures* checkpoint) const {
+  if (checkpoint == nullptr) return of_run(run).or_nan();
   const auto number = [&](const std::string& name) {
-    if (checkpoint != nullptr && find_measure(name) != nullptr) {
-      return checkpoint->measures.number(name);
-    }
-    if (checkpoint != nullptr && name == "cycle") return checkpoint->cycle;
-    const Measure* measure = find_measure(name, MeasureKind::run);
-    return measure != nullptr ? measure->of_run(run).or_nan() : number_of(run, name);
+    if (find_measure(name) != nullptr) return checkpoint->measures.number(name);
+    return name == "cycle" ? checkpoint->cycle : NumberColumn(name)(run);
   };
   return evaluate_ ? evaluate_(number) : number(text_);
+}
+
+RunValue NumberColumn::of_run(const FrameRun& run) const {
+  if (!evaluate_) {
+    const Measure* measure = find_measure(text_, MeasureKind::run);
+    return measure != nullptr ? measure->of_run(run) : measured(number_of(run, text_));
+  }
+  std::map<std::string, double> numbers;
+  double* bound = nullptr;  // of the censored measure
+  std::size_t censored = 0;
+  for (const std::string& name : names_in(text_)) {
+    const RunValue value = NumberColumn(name).of_run(run);
+    const bool ends_before = value.missing == Missing::too_short;
+    if (value.missing != Missing::nothing && !ends_before) return {0, value.missing};
+    double& number = numbers[name] = ends_before ? value.above : value.value;
+    if (ends_before) ++censored, bound = &number;
+  }
+  const auto evaluate = [&] {
+    return evaluate_([&](const std::string& name) { return numbers.at(name); });
+  };
+  const double first = evaluate();
+  if (censored == 0) return measured(first);
+  // The expression library only evaluates. Therefore "increases" means: does not decrease from one
+  // point to the next, at 480 points from the bound to 1e6 times the bound (from 1 if it is 0).
+  const double from = *bound, unit = from == 0 ? 1 : std::abs(from);
+  double last = first;
+  bool increases = censored == 1;
+  for (int k = -240; k < 240 && increases; ++k) {
+    *bound = from + unit * std::pow(10, k / 40.0);
+    const double next = evaluate();
+    increases = next >= last;
+    last = next;
+  }
+  if (!increases) return {0, Missing::unbounded};
+  // If the expression is constant above the bound, its value is known.
+  return last > first ? RunValue{0, Missing::too_short, first} : measured(first);
+}
+
+std::string reach_of(std::string_view column) {
+  std::set<std::string_view> reaches;
+  for (const std::string& name : names_in(column)) {
+    const Measure* measure = find_measure(name, MeasureKind::run);
+    if (measure != nullptr) reaches.insert(measure->reach);
+  }
+  return reaches.empty() ? std::string(column) : fmt::format("{}", fmt::join(reaches, " and "));
 }
 
 std::vector<std::string> providers_of(std::span<const std::string> columns) {

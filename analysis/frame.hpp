@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "analysis/censored.hpp"
 #include "analysis/expression.hpp"
 #include "analysis/measures.hpp"
 #include "core/named.hpp"
@@ -61,11 +62,13 @@ struct Frame {
 };
 
 /// Why a number is missing for a run: there is no checkpoint at the cycle, the run ends before the
-/// cycle or begins after it, or the number is undefined, such as phi without interior grains.
-enum class Missing { nothing, checkpoint, too_short, too_late, undefined };
+/// cycle or begins after it, the number is undefined, such as phi without interior grains, or it is
+/// an expression of which a censored measure gives no lower limit.
+enum class Missing { nothing, checkpoint, too_short, too_late, undefined, unbounded };
 template <>
 inline constexpr auto kNames<Missing> = names_in_order<Missing>("", "no checkpoint", "ends before",
-                                                                "begins after", "undefined");
+                                                                "begins after", "undefined",
+                                                                "no lower limit");
 
 /// One number of a run, or the reason why it is missing.
 struct RunValue {
@@ -98,6 +101,10 @@ class NumberColumn {
   /// The value of the column at the checkpoint, or for the whole run if `checkpoint` is null. NaN
   /// if there is no such value.
   double operator()(const FrameRun& run, const CheckpointMeasures* checkpoint = nullptr) const;
+  /// The number of a column that is_of_run(). If one measure in an expression is censored and the
+  /// expression increases with it, the number is censored, too. If the expression does not increase
+  /// or several measures are censored, the number is `unbounded`.
+  RunValue of_run(const FrameRun& run) const;
 
  private:
   std::string text_;
@@ -109,6 +116,9 @@ bool is_of_run(std::string_view column);
 /// Whether a column is a measure of a whole run. Unlike a parameter, such a measure differs between
 /// runs of one variant.
 bool is_measured_of_run(std::string_view column);
+/// What a run must reach to have a number in a column of measures of the run: "the onset". For a
+/// column without such measures: the column.
+std::string reach_of(std::string_view column);
 /// Names of the providers that compute the measures in the columns.
 std::vector<std::string> providers_of(std::span<const std::string> columns);
 
@@ -150,8 +160,13 @@ const std::string& packing_of(const FrameRun& run);
 using PackingGroups = nlohmann::ordered_map<std::string, std::vector<const FrameRun*>>;
 /// Groups runs by packing. Packings, and the runs of each packing, keep their order in `group`.
 PackingGroups by_packing(RunGroup group);
-/// Returns, for each packing, the mean of the values of its runs. `values` has one value for each
-/// run. Values that are not finite are left out. Packings are in the order of the runs.
+/// Mean of the runs of each packing. Packings are in the order of the runs.
+using PackingMeans = nlohmann::ordered_map<std::string, CensoredValue>;
+/// Averages `values` (one per run) over the runs of each packing. A mean is censored if one of the
+/// averaged values is censored. Values that are not finite are left out.
+PackingMeans means_by_packing(RunGroup runs, std::span<const CensoredValue> values);
+std::vector<CensoredValue> values_of(const PackingMeans& means);
+std::vector<CensoredValue> over_packings(RunGroup runs, std::span<const CensoredValue> values);
 std::vector<double> over_packings(RunGroup runs, std::span<const double> values);
 /// The measure at the first checkpoint of each run, averaged over runs; NaN without checkpoints.
 double at_start(RunGroup runs, const std::string& measure);

@@ -177,26 +177,19 @@ std::vector<double> nucleus_places(const FrameRun& run, CellAxis axis, Seen seen
 
 std::vector<DensityBin> density(std::span<const std::vector<double>> groups, std::size_t bins) {
   const auto count = static_cast<double>(bins);
-  std::vector<Eigen::ArrayXd> histograms;
-  for (const std::vector<double>& places : groups) {
-    auto& histogram =
-        histograms.emplace_back(Eigen::ArrayXd::Zero(static_cast<Eigen::Index>(bins)));
-    for (const double p : places) {
-      ++histogram[static_cast<Eigen::Index>(std::clamp(p * count, 0.0, count - 1))];
-    }
-  }
   std::vector<std::size_t> every(groups.size());
   std::iota(every.begin(), every.end(), 0);
   std::vector<DensityBin> result;
   for (std::size_t k = 0; k < bins; ++k) {
-    const auto density_of = [&](std::span<const std::size_t> selection) {
-      double inside = 0, all = 0;
-      for (const std::size_t group : selection) {
-        inside += histograms[group][static_cast<Eigen::Index>(k)];
-        all += histograms[group].sum();
+    std::vector<std::vector<double>> densities;  // of each place: `bins` in this bin, 0 elsewhere
+    for (const std::vector<double>& places : groups) {
+      std::vector<double>& of_group = densities.emplace_back();
+      for (const double p : places) {
+        const auto bin = static_cast<std::size_t>(std::clamp(p * count, 0.0, count - 1));
+        of_group.push_back(bin == k ? count : 0);
       }
-      return inside / all * count;
-    };
+    }
+    const RunStatistic density_of = mean_of_items(std::move(densities));
     const double width = 1 / count, low = static_cast<double>(k) * width;
     result.push_back(
         {low, low + width, density_of(every), bootstrap_error(groups.size(), density_of)});
@@ -212,10 +205,10 @@ std::string grains_of(Region region) {
 std::map<std::int64_t, Exposure> exposures_of(const FrameRun& run, Region region, double width) {
   const RunOnset onset = onset_by_size(run);
   std::map<std::int64_t, Exposure> exposures;
-  if (onset.observed == Observed::before_start) return exposures;
+  if (onset.missing == Missing::too_late) return exposures;
   for (std::size_t k = 1; k < run.checkpoints.size(); ++k) {
     const CheckpointMeasures &from = run.checkpoints[k - 1], &to = run.checkpoints[k];
-    const bool here = onset.observed == Observed::yes && onset.cycle <= to.cycle;
+    const bool here = onset.missing == Missing::nothing && onset.cycle <= to.cycle;
     const double cycles = (here ? onset.cycle : to.cycle) - from.cycle;
     const double phi = from.measures.number(region == Region::core ? "core_phi" : "phi");
     if (std::isfinite(phi) && cycles > 0) {

@@ -25,19 +25,19 @@ RunOnset onset_by_size(const FrameRun& run) {
     if (!std::isfinite(phi)) continue;
     const double size = checkpoint.measures.number("largest_crystallite");
     if (size >= critical_size) {
-      if (std::isnan(phi_before)) return {Observed::before_start, 0, 0};
+      if (std::isnan(phi_before)) return {Missing::too_late, 0, 0};
       const double part = (critical_size - size_before) / (size - size_before);
-      return {Observed::yes, std::lerp(phi_before, phi, part),
+      return {Missing::nothing, std::lerp(phi_before, phi, part),
               std::lerp(cycle_before, checkpoint.cycle, part)};
     }
     cycle_before = checkpoint.cycle, phi_before = phi, size_before = size;
   }
-  return {Observed::never, phi_before, cycle_before};
+  return {Missing::too_short, phi_before, cycle_before};
 }
 
 RunOnset onset_by_slope(const FrameRun& run) {
   const RunOnset by_size = onset_by_size(run);
-  if (by_size.observed != Observed::yes) return by_size;
+  if (by_size.missing != Missing::nothing) return by_size;
   struct Point {
     double phi, log_size, cycle;
   };
@@ -49,7 +49,7 @@ RunOnset onset_by_slope(const FrameRun& run) {
   }
   const auto [lowest, highest] = std::ranges::minmax(points, {}, &Point::phi);
   constexpr double step = slope_window / 32;
-  RunOnset found{Observed::unclear};
+  RunOnset found{Missing::undefined};
   double steepest = 0;
   const auto steps = static_cast<int>((highest.phi - lowest.phi) / step);
   for (int k = 0; k <= steps; ++k) {
@@ -67,7 +67,7 @@ RunOnset onset_by_slope(const FrameRun& run) {
     const double slope = least_squares_slope(within);
     if (slope <= steepest) continue;
     steepest = slope;
-    found = {Observed::yes, phi, cycle / static_cast<double>(within.size())};
+    found = {Missing::nothing, phi, cycle / static_cast<double>(within.size())};
   }
   return found;
 }
@@ -77,10 +77,8 @@ namespace {
 template <OnsetMethod kMethod, double RunOnset::*kValue>
 RunValue at_onset(const FrameRun& run) {
   const RunOnset onset = kMethod(run);
-  if (onset.observed == Observed::never) return {0, Missing::too_short, onset.*kValue};
-  if (onset.observed == Observed::before_start) return {0, Missing::too_late};
-  if (onset.observed == Observed::unclear) return {0, Missing::undefined};
-  return measured(onset.*kValue);
+  if (onset.missing == Missing::too_short) return {0, Missing::too_short, onset.*kValue};
+  return onset.missing == Missing::nothing ? measured(onset.*kValue) : RunValue{0, onset.missing};
 }
 
 }  // namespace

@@ -200,8 +200,8 @@ void evaluate(const PlotSpec& plot, std::span<const NumberColumn> columns, const
     }
   };
   for (const ColumnSpec& column : plot.columns) {
-    const Measure* measure = find_measure(column.measure, MeasureKind::run);
-    trace.of_run.push_back(measure == nullptr ? RunValue{} : measure->of_run(*trace.run));
+    const bool of_run = is_of_run(column.measure) && is_measured_of_run(column.measure);
+    trace.of_run.push_back(of_run ? NumberColumn(column.measure).of_run(*trace.run) : RunValue{});
     if (!trace.partners.empty()) trace.of_run.back().above = std::nan("");
   }
   switch (against(plot)) {
@@ -757,9 +757,8 @@ std::string note_of(const Panel& panel, std::size_t with_value) {
   }
   std::string note;
   if (censored > 0) {
-    add_note(note,
-             fmt::format("{} of {} runs end before {}; the means use their censored values",
-                         censored, runs, find_measure(panel.plot.y(), MeasureKind::run)->reach));
+    add_note(note, fmt::format("{} of {} runs end before {}; the means use their censored values",
+                               censored, runs, reach_of(panel.plot.y())));
   }
   if (const std::size_t without = runs - with_value - censored; without > 0) {
     add_note(note, fmt::format("{} of {} runs have no value and are left out of the means", without,

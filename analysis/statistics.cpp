@@ -125,6 +125,17 @@ double least_squares_slope(std::span<const std::pair<double, double>> points) {
   return xy / xx;
 }
 
+RunStatistic mean_of_items(std::vector<std::vector<double>> groups) {
+  return [groups = std::move(groups)](std::span<const std::size_t> selection) {
+    double sum = 0, all = 0;
+    for (const std::size_t group : selection) {
+      for (const double item : groups[group]) sum += item;
+      all += static_cast<double>(groups[group].size());
+    }
+    return sum / all;
+  };
+}
+
 std::optional<double> bootstrap_error(std::size_t runs, const RunStatistic& statistic) {
   if (runs < 2) return std::nullopt;
   const RunStatistics found = over_runs(bootstrap_values(runs, runs, statistic));
@@ -226,20 +237,22 @@ std::optional<SpreadBetween> variance_between(std::span<const std::vector<double
                        between / noise};
 }
 
-Estimate ratio(const Estimate& a, const Estimate& b) {
+std::optional<Estimate> relative_difference(const std::optional<Estimate>& a,
+                                            const std::optional<Estimate>& b) {
+  if (!a || !b) return std::nullopt;
   const auto log_factor = [](double high, double low) {  // infinite if low is not positive
     return std::log(std::max(high, 0.0) / std::max(low, 0.0));
   };
-  const double value = a.value / b.value;
+  const double value = a->value / b->value;
   const double down =
-      std::hypot(log_factor(a.value, a.interval.low), log_factor(b.interval.high, b.value));
+      std::hypot(log_factor(a->value, a->interval.low), log_factor(b->interval.high, b->value));
   const double up =
-      std::hypot(log_factor(a.interval.high, a.value), log_factor(b.value, b.interval.low));
-  return {.value = value,
-          .interval = {value * std::exp(-down), value * std::exp(up)},
-          .runs = std::min(a.runs, b.runs),
-          .groups = 2,
-          .spread = value * std::hypot(a.spread / a.value, b.spread / b.value)};
+      std::hypot(log_factor(a->interval.high, a->value), log_factor(b->value, b->interval.low));
+  return Estimate{.value = value - 1,
+                  .interval = {value * std::exp(-down) - 1, value * std::exp(up) - 1},
+                  .runs = std::min(a->runs, b->runs),
+                  .groups = 2,
+                  .spread = value * std::hypot(a->spread / a->value, b->spread / b->value)};
 }
 
 std::optional<std::size_t> runs_to_resolve(const Estimate& estimate, double distance,

@@ -32,6 +32,8 @@ double least_squares_slope(std::span<const std::pair<double, double>> points);
 /// occur several times, since the bootstrap draws 1000 samples with replacement. The random numbers
 /// of the bootstrap are counter-based, so the same input gives the same samples.
 using RunStatistic = std::function<double(std::span<const std::size_t>)>;
+/// The mean of all items of the selected groups. A group has the items of one packing.
+RunStatistic mean_of_items(std::vector<std::vector<double>> groups);
 
 /// Standard error of a statistic: its standard deviation over the bootstrap samples, multiplied by
 /// sqrt(runs / (runs - 1)). For a mean it agrees with over_runs(). Empty for fewer than two runs,
@@ -116,11 +118,12 @@ struct SpreadBetween {
 std::optional<SpreadBetween> variance_between(std::span<const std::vector<double>> groups,
                                               double level = confidence_level);
 
-/// Ratio a / b of two independent estimates of positive quantities. The lower error of ln(a / b) is
-/// the lower error of ln a and the upper error of ln b, added in quadrature. The upper error is the
-/// upper error of ln a and the lower error of ln b, added in quadrature. Source: G. Y. Zou and A.
-/// Donner, Stat. Med. 27, 1693 (2008).
-Estimate ratio(const Estimate& a, const Estimate& b);
+/// a / b - 1 of two independent estimates of positive quantities; empty if one of them is empty.
+/// The lower error of ln(a / b) is the lower error of ln a and the upper error of ln b, added in
+/// quadrature. The upper error is the upper error of ln a and the lower error of ln b, added in
+/// quadrature. Source: G. Y. Zou and A. Donner, Stat. Med. 27, 1693 (2008).
+std::optional<Estimate> relative_difference(const std::optional<Estimate>& a,
+                                            const std::optional<Estimate>& b);
 
 /// Number of runs per group (or of pairs) that are needed so that, with 90 % probability, the
 /// interval excludes a value at `distance` from the true value. With `both_sides` the interval must

@@ -149,7 +149,7 @@ void withhold(Verdict& verdict) {
 }
 
 Table entered_table(std::span<const Verdict> verdicts) {
-  Table table{.name = "entered", .columns = {"claim"}};
+  Table table{.name = "entered", .columns = {"id", "claim"}};
   for (const Verdict& verdict : verdicts) {
     std::vector<std::size_t> places;
     for (const TableColumn& column : verdict.entered.columns) {
@@ -157,7 +157,7 @@ Table entered_table(std::span<const Verdict> verdicts) {
       if (places.back() == table.columns.size()) table.columns.push_back(column);
     }
     for (const TableRow& values : verdict.entered.rows) {
-      TableRow& row = table.rows.emplace_back(TableRow{verdict.claim});
+      TableRow& row = table.rows.emplace_back(TableRow{verdict.id, verdict.claim});
       row.resize(table.columns.size());
       for (std::size_t k = 0; k < values.size(); ++k) row[places[k]] = values[k];
     }

@@ -105,7 +105,8 @@ bool is_firm(Ruling ruling);
 /// Changes the ruling to `undecided`. The ruling `undecidable` is not changed.
 void withhold(Verdict& verdict);
 
-/// Joins the tables Verdict::entered of all verdicts into one table. The first column is the claim.
+/// Joins the tables Verdict::entered of all verdicts into one table. The first columns are the id
+/// and the text of the claim.
 Table entered_table(std::span<const Verdict> verdicts);
 
 /// {"verdict", "claims": [{"id", "claim", "quantity", "estimate", "interval": [low, high], "level",

@@ -21,7 +21,8 @@ using nlohmann::json;
 /// A stratum with n and m runs on the two sides has the weight n m / (n + m). The variances of the
 /// means may differ, so t has Welch's degrees of freedom.
 Verdict decide_pooled(const ClaimSpec& claim, const Claim& stated, RunGroup a, RunGroup b) {
-  const Scalar number = estimator_by_keys(claim).scalar(claim);
+  NumbersOfRuns numbers{estimator_by_keys(claim).scalar(claim)};
+  numbers.entered = entered_with({"stratum", "side", "value", "missing"});
   const RunGroup sides[] = {a, b};
   std::vector<json> others;  // for each run, its parameters except the keys of `between`
   for (const RunGroup side : sides) {
@@ -35,19 +36,14 @@ Verdict decide_pooled(const ClaimSpec& claim, const Claim& stated, RunGroup a, R
   const std::vector<std::string> keys = varied_keys(others);
   using Side = std::pair<std::vector<const FrameRun*>, std::vector<CensoredValue>>;
   std::map<json, std::array<Side, 2>> strata;
-  Table entered = entered_with({"stratum", "side", "value", "missing", "above"});
   for (std::size_t k = 0; k < 2; ++k) {
     for (const FrameRun* run : sides[k]) {
       json stratum = json::object();
       for (const std::string& key : keys) stratum[key] = run->parameters.value(key, json());
-      const RunValue value = number.of(*run);
       auto& [runs, values] = strata[stratum].at(k);
       runs.push_back(run);
-      values.push_back(censored_value(value));
-      enter(*run,
-            {shearcell::words_of(stratum), k + 1, value.or_nan(),
-             std::string(name_of(value.missing)), value.above},
-            entered);
+      values.push_back(
+          numbers.take(*run, numbers.scalar.of(*run), {shearcell::words_of(stratum), k + 1}));
     }
   }
   double weights = 0, sum = 0, variance = 0, fourth = 0;
@@ -61,10 +57,10 @@ Verdict decide_pooled(const ClaimSpec& claim, const Claim& stated, RunGroup a, R
     }
     if (both[0].first.empty() || both[1].first.empty()) continue;  // nothing to compare
     const bool usable = mean[0] && mean[1] && std::isfinite(mean[0]->spread + mean[1]->spread);
-    for (const auto& [of_side, numbers] : both) {
-      all += numbers.size();
+    for (const auto& [of_side, found] : both) {
+      all += found.size();
       used += static_cast<std::size_t>(std::ranges::count_if(
-          numbers, [&](const CensoredValue& v) { return usable && std::isfinite(v.value); }));
+          found, [&](const CensoredValue& v) { return usable && std::isfinite(v.value); }));
     }
     if (!usable) continue;
     ++pooled;
@@ -96,11 +92,12 @@ Verdict decide_pooled(const ClaimSpec& claim, const Claim& stated, RunGroup a, R
         "{} and {} runs on the two sides, from {} of {}; the runs of a group differ only in the "
         "compared parameter and the seed, and each side of a group needs at least {} values",
         runs[0], runs[1], pooled, counted(strata.size(), "group"), least_runs);
+    numbers.note_missing(note);
     if (!is_enough(used, all)) add_note(note, many_left_out);
   }
-  Verdict verdict =
-      decide(stated, "pooled difference in " + number.name, estimate, std::min(runs[0], runs[1]),
-             std::move(note), std::move(entered), Counted::runs_per_variant);
+  Verdict verdict = decide(stated, "pooled difference in " + numbers.scalar.name, estimate,
+                           std::min(runs[0], runs[1]), std::move(note), std::move(numbers.entered),
+                           Counted::runs_per_variant);
   verdict.censored = censored;
   return verdict;
 }

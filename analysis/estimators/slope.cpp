@@ -17,34 +17,33 @@ std::string words_of_slope(const ClaimSpec& claim) {
 
 /// x is the value of the column `against` at the first checkpoint of each run.
 Verdict decide_slope(const ClaimSpec& claim, const Claim& stated, RunGroup runs, RunGroup) {
-  const Scalar number = number_of_the_run.scalar(claim);
+  NumbersOfRuns numbers{number_of_the_run.scalar(claim)};
+  numbers.entered = entered_with({"x", "value", "missing"});
   const NumberColumn against(claim.against);
   std::vector<CensoredValue> values;
   std::vector<double> at;
   std::set<std::string> variants;
-  std::size_t censored = 0;
-  Table entered = entered_with({"x", "value", "missing", "above"});
   for (const FrameRun* run : runs) {
     if (run->checkpoints.empty()) continue;
     const double x = against(*run, &run->checkpoints.front());
-    const RunValue found = number.of(*run);
-    const CensoredValue value = censored_value(found);
-    if (!std::isfinite(x) || !std::isfinite(value.value)) continue;
+    if (!std::isfinite(x)) continue;
+    const CensoredValue value = numbers.take(*run, numbers.scalar.of(*run), {x});
+    if (!std::isfinite(value.value)) continue;
     values.push_back(value);
     at.push_back(x);
     variants.insert(run->place.variant);
-    censored += value.censored ? 1 : 0;
-    enter(*run, {x, found.or_nan(), std::string(name_of(found.missing)), found.above}, entered);
   }
-  std::string note = fmt::format("{} of {} runs in {} have a value", values.size() - censored,
-                                 runs.size(), counted(variants.size(), "variant"));
+  std::string note =
+      fmt::format("{} of {} runs in {} have a value", values.size() - numbers.censored, runs.size(),
+                  counted(variants.size(), "variant"));
+  numbers.note_missing(note);
   const bool enough = is_enough(values.size(), runs.size());
   if (!enough) add_note(note, many_left_out);
   std::optional<Estimate> estimate;
   if (variants.size() > 1 && enough) estimate = censored_slope(values, at, stated.level);
   Verdict verdict = decide(stated, words_of_slope(claim), estimate, values.size(), std::move(note),
-                           std::move(entered));
-  verdict.censored = censored;
+                           std::move(numbers.entered));
+  verdict.censored = numbers.censored;
   return verdict;
 }
 

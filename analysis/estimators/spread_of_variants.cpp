@@ -17,21 +17,16 @@ std::string words_of_spread(const ClaimSpec& claim) {
 }
 
 Verdict decide_spread(const ClaimSpec& claim, const Claim& stated, RunGroup runs, RunGroup) {
-  const Scalar number = estimator_by_keys(claim).scalar(claim);
+  NumbersOfRuns numbers{estimator_by_keys(claim).scalar(claim)};
   std::map<std::string, std::vector<const FrameRun*>> variants;
   for (const FrameRun* run : runs) variants[run->place.variant].push_back(run);
   std::vector<std::vector<double>> groups;
   std::size_t with_number = 0;
-  NumbersOfRuns numbers;
-  Table entered = entered_with({"value", "missing"});
   for (const auto& [variant, members] : variants) {
-    const std::vector<RunValue> found = numbers.take(number, members);
     std::vector<double> values;
-    for (std::size_t k = 0; k < members.size(); ++k) {
-      values.push_back(found[k].or_nan());
-      enter(*members[k], {values[k], std::string(name_of(found[k].missing))}, entered);
+    for (const auto& [packing, mean] : numbers.take(members)) {
+      if (!mean.censored) values.push_back(mean.value);
     }
-    values = over_packings(members, values);
     with_number += values.size();
     if (!values.empty()) groups.push_back(std::move(values));
   }
@@ -40,8 +35,9 @@ Verdict decide_spread(const ClaimSpec& claim, const Claim& stated, RunGroup runs
                          : fmt::format("{} independent values from {} runs of {}", with_number,
                                        runs.size(), counted(groups.size(), "variant"));
   std::optional<Estimate> estimate;
-  add_note(note, numbers.why_not());
-  if (const auto found = variance_between(groups, stated.level); found && numbers.enough) {
+  const std::string why_not = numbers.why_not();
+  add_note(note, why_not);
+  if (const auto found = variance_between(groups, stated.level); found && why_not.empty()) {
     // The spread is NaN: the number of runs that would decide the claim is unknown.
     estimate = Estimate{.value = found->value,
                         .interval = {0, found->upper_limit},
@@ -52,12 +48,12 @@ Verdict decide_spread(const ClaimSpec& claim, const Claim& stated, RunGroup runs
                          "{:.3g} % confidence limit",
                          found->f, 50 * (1 + stated.level)));
   }
-  if (!estimate && numbers.enough) {
+  if (!estimate && why_not.empty()) {
     add_note(note, "at least two variants are needed, and one of them needs two values or more");
   }
   return decide(stated, words_of_spread(claim), estimate,
                 with_number / std::max<std::size_t>(1, groups.size()), std::move(note),
-                std::move(entered), Counted::runs_per_variant);
+                std::move(numbers.entered), Counted::runs_per_variant);
 }
 
 }  // namespace

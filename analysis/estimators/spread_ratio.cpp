@@ -29,12 +29,13 @@ Verdict decide_ratio(const ClaimSpec& claim, const Claim& stated, RunGroup runs,
   const Scalar first = number_of_the_run.scalar(claim), second = number_of_the_run.scalar(other);
   Table entered = entered_with({"value", "other"});
   NumbersOfRuns numbers;
-  const std::vector<RunValue> xs = numbers.take(first, runs), ys = numbers.take(second, runs);
   std::map<std::string, std::vector<std::pair<double, double>>> variants;
-  for (std::size_t k = 0; k < runs.size(); ++k) {
-    const double x = xs[k].or_nan(), y = ys[k].or_nan();
-    enter(*runs[k], {x, y}, entered);
-    if (std::isfinite(x) && std::isfinite(y)) variants[runs[k]->place.variant].emplace_back(x, y);
+  for (const FrameRun* run : runs) {
+    const RunValue of_first = first.of(*run), of_second = second.of(*run);
+    numbers.take(*run, of_first.missing == Missing::nothing ? of_second : of_first);
+    const double x = of_first.or_nan(), y = of_second.or_nan();
+    enter(*run, {x, y}, entered);
+    if (std::isfinite(x) && std::isfinite(y)) variants[run->place.variant].emplace_back(x, y);
   }
   double n = 0, xx = 0, yy = 0, xy = 0;
   for (const auto& [variant, pairs] : variants) {
@@ -49,9 +50,11 @@ Verdict decide_ratio(const ClaimSpec& claim, const Claim& stated, RunGroup runs,
     n += count;
   }
   const auto with_both = static_cast<std::size_t>(n);
+  numbers.enough = is_enough(with_both, runs.size());
+  const std::string why_not = numbers.why_not();
   const double freedom = n - static_cast<double>(variants.size()) - 1;
   std::optional<Estimate> estimate;
-  if (freedom >= 1 && xx > 0 && yy > 0 && numbers.enough) {
+  if (freedom >= 1 && xx > 0 && yy > 0 && why_not.empty()) {
     const double t = student_quantile((1 + stated.level) / 2, freedom);
     const double k = 1 + 2 * (1 - xy * xy / (xx * yy)) * t * t / freedom;
     const double log_ratio = std::log(xx / yy) / 2, half = std::acosh(k) / 2;
@@ -61,7 +64,7 @@ Verdict decide_ratio(const ClaimSpec& claim, const Claim& stated, RunGroup runs,
   std::string note =
       fmt::format("{} of {} runs have values of both measures, in {}; Pitman-Morgan test",
                   with_both, runs.size(), counted(variants.size(), "variant"));
-  add_note(note, numbers.why_not());
+  add_note(note, why_not);
   return decide(stated, words_of_ratio(claim) + ", minus 1", estimate, with_both, std::move(note),
                 std::move(entered));
 }

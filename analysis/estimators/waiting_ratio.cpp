@@ -23,24 +23,20 @@ std::string event_of(const ClaimSpec& claim) {
   return claim.reaches ? fmt::format("{} >= {}", claim.compare, *claim.reaches) : "the onset";
 }
 
-/// The first cycle of each run at which the column is at least `level`. A run without such a cycle
-/// is censored at its last cycle.
-std::vector<Waiting> waits_for(RunGroup runs, const std::string& column, double level) {
-  const NumberColumn number(column);
+/// The cycle of the event in each run. A run without the event is censored at its last cycle.
+std::vector<Waiting> waits_of(const ClaimSpec& claim, RunGroup runs) {
+  if (!claim.reaches) return waits_for_onset(runs);
+  const NumberColumn number(claim.compare);
   std::vector<Waiting> waits;
   for (const FrameRun* run : runs) {
     if (run->checkpoints.empty()) continue;
     const auto reached = std::ranges::find_if(run->checkpoints, [&](const auto& checkpoint) {
-      return number(*run, &checkpoint) >= level;
+      return number(*run, &checkpoint) >= *claim.reaches;
     });
     const bool observed = reached != run->checkpoints.end();
     waits.push_back({observed ? reached->cycle : run->checkpoints.back().cycle, observed});
   }
   return waits;
-}
-
-std::vector<Waiting> waits_of(const ClaimSpec& claim, RunGroup runs) {
-  return claim.reaches ? waits_for(runs, claim.compare, *claim.reaches) : waits_for_onset(runs);
 }
 
 Verdict decide_waits(const ClaimSpec& claim, const Claim& stated, RunGroup first, RunGroup second) {
@@ -94,7 +90,7 @@ std::vector<Waiting> waits_for_onset(RunGroup runs) {
   for (const FrameRun* run : runs) {
     if (run->checkpoints.empty()) continue;
     const RunOnset onset = onset_by_size(*run);
-    const bool observed = onset.observed != Observed::never;
+    const bool observed = onset.missing != Missing::too_short;
     waits.push_back({observed ? onset.cycle : run->checkpoints.back().cycle, observed});
   }
   return waits;

@@ -269,10 +269,10 @@ Verdict critical_size_is_published(const AmplitudeGrowth& one) {
                         in_grains(one.monotone));
     note += fmt::format("; 90 % of repeated studies with {} runs would give {} to {}",
                         published_runs, in_grains(low), in_grains(high));
-    relative = ratio(*critical, {.value = published,
-                                 .interval = {published * size / high, published * size / low},
-                                 .runs = critical->runs});
-    relative = mapped(*relative, [](double ratio) { return ratio - 1; });
+    relative = relative_difference(
+        critical, Estimate{.value = published,
+                           .interval = {published * size / high, published * size / low},
+                           .runs = critical->runs});
   } else {
     note += counts.size() < least_bootstrap_runs ? "; too few runs"
                                                  : "; no size at which growth begins";
@@ -319,10 +319,8 @@ Verdict critical_size_grows(std::span<const AmplitudeGrowth> all) {
   std::vector<const FrameRun*> compared;
   if (sized.size() > 1) {
     const AmplitudeGrowth &low = *sized.front(), &high = *sized.back();
-    const auto size = [](const AmplitudeGrowth& one) {
-      return *one.after.at(cycles_compared).critical;
-    };
-    growth = mapped(ratio(size(high), size(low)), [](double r) { return r - 1; });
+    growth = relative_difference(high.after.at(cycles_compared).critical,
+                                 low.after.at(cycles_compared).critical);
     compared = low.runs;
     compared.insert(compared.end(), high.runs.begin(), high.runs.end());
   }

@@ -313,8 +313,7 @@ Verdict size_is_published(const Amplitude& one) {
 /// different amplitudes count as independent: they have at most the packing in common.
 Verdict size_grows(const Amplitude& low, const Amplitude& high) {
   const auto before = half_size(low, chosen_rule), after = half_size(high, chosen_rule);
-  std::optional<Estimate> growth;
-  if (before && after) growth = mapped(ratio(*after, *before), [](double r) { return r - 1; });
+  const std::optional<Estimate> growth = relative_difference(after, before);
   return decide({.text = fmt::format("C: the critical size is larger at A = {} rad than at {}",
                                      high.amplitude, low.amplitude),
                  .claimed = Relation::higher,

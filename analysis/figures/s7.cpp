@@ -8,7 +8,6 @@
 #include <cmath>
 #include <functional>
 #include <map>
-#include <ranges>
 
 #include "analysis/estimators.hpp"
 #include "analysis/figure.hpp"
@@ -32,11 +31,11 @@ struct Places {
   std::size_t count = 0;  ///< number of nuclei in all packings
 };
 
-Places places_of(RunGroup runs, CellAxis axis) {
+Places places_of(RunGroup runs, CellAxis axis, Seen seen = Seen::always) {
   Places places;
   std::map<std::string, std::vector<double>> packings;
   for (const FrameRun* run : runs) {
-    const std::vector<double> found = nucleus_places(*run, axis);
+    const std::vector<double> found = nucleus_places(*run, axis, seen);
     if (found.empty()) continue;
     places.count += found.size();
     ++places.runs;
@@ -91,51 +90,36 @@ Table density_table(std::string name, std::string first_column, Text x,
   return table;
 }
 
-/// Mean over all items of the packings. The bootstrap draws packings, each with all its items.
-std::optional<Estimate> mean_of_items(std::span<const std::vector<double>> packings) {
-  return bootstrapped(packings.size(), [&](std::span<const std::size_t> selection) {
-    double sum = 0, all = 0;
-    for (const std::size_t packing : selection) {
-      for (const double item : packings[packing]) sum += item;
-      all += static_cast<double>(packings[packing].size());
-    }
-    return sum / all;
-  });
-}
-
 /// Verdict on the share of nuclei in one part of the cell minus the share in another part. `side`
 /// returns 1 for a nucleus in the first part, -1 in the second part, and 0 elsewhere. A nucleus for
 /// which it returns nothing is left out. The bootstrap resamples packings, each with all its runs.
 Verdict share_verdict(const Claim& claim, std::string quantity, RunGroup runs, CellAxis axis,
                       const std::function<std::optional<int>(double place)>& side) {
-  std::map<std::string, std::vector<double>> packings;
-  std::size_t nuclei = 0, with_nuclei = 0;
-  Table entered = entered_with({"place", "value"});
-  for (const FrameRun* run : runs) {
-    const std::vector<double> places = nucleus_places(*run, axis, Seen::first);
-    if (places.empty()) continue;
-    nuclei += places.size();
-    ++with_nuclei;
-    std::vector<double>& sides = packings[packing_of(*run)];
+  const Places nuclei = places_of(runs, axis, Seen::first);
+  std::vector<std::vector<double>> sides;  // of each packing
+  for (const std::vector<double>& places : nuclei.packings) {
+    std::vector<double>& of_packing = sides.emplace_back();
     for (const double place : places) {
-      const std::optional<int> counted = side(place);
-      if (!counted) continue;
-      sides.push_back(*counted);
-      enter(*run, {place, std::int64_t{*counted}}, entered);
+      if (const auto counted = side(place)) of_packing.push_back(*counted);
     }
   }
-  std::string note = fmt::format("{} nuclei of {} to {} grains in {} of {} runs", nuclei,
-                                 nucleus_smallest, nucleus_largest, with_nuclei, runs.size());
-  if (packings.size() < with_nuclei) {
-    note += fmt::format("; {}, and nuclei of all runs of one packing are pooled",
-                        counted(packings.size(), "packing"));
+  Table entered = entered_with({"place", "value"});
+  for (const FrameRun* run : runs) {
+    for (const double place : nucleus_places(*run, axis, Seen::first)) {
+      if (const auto counted = side(place)) enter(*run, {place, std::int64_t{*counted}}, entered);
+    }
   }
-  if (packings.size() < least_bootstrap_runs) {
+  std::string note = fmt::format("{} nuclei of {} to {} grains in {} of {} runs", nuclei.count,
+                                 nucleus_smallest, nucleus_largest, nuclei.runs, runs.size());
+  if (sides.size() < nuclei.runs) {
+    note += fmt::format("; {}, and nuclei of all runs of one packing are pooled",
+                        counted(sides.size(), "packing"));
+  }
+  if (sides.size() < least_bootstrap_runs) {
     note += fmt::format("; too few; at least {} are needed", least_bootstrap_runs);
   }
-  const auto sides = std::views::values(packings);
-  return decide(claim, std::move(quantity), mean_of_items(std::vector(sides.begin(), sides.end())),
-                packings.size(), std::move(note), std::move(entered));
+  return decide(claim, std::move(quantity), bootstrapped(sides.size(), mean_of_items(sides)),
+                sides.size(), std::move(note), std::move(entered));
 }
 
 /// Compares the shares of nuclei in the inner half and the outer half of the accessible width.

@@ -112,7 +112,7 @@ std::vector<std::string> notes_of(const std::vector<Plan>& plans, const std::vec
 }
 
 // The undecided claims of the experiment and the chance that the next look decides each of them,
-// such as "S2.phi 0.93". Uses the cached measures of the runs that have ended.
+// such as "S2.phi 0.93". Unknown until `figures` has measured all runs that have ended.
 std::vector<std::string> powers_of(const Store& store, const Plan& plan) {
   FigureOptions options;
   options.only_cached = true;
@@ -121,8 +121,14 @@ std::vector<std::string> powers_of(const Store& store, const Plan& plan) {
   for (const WantedFigure& wanted : wanted_figures(store).figures) {
     if (wanted.experiment != plan.manifest.experiment || wanted.figure.claims.empty()) continue;
     try {
-      for (const Verdict& verdict : compute_figure(store, wanted, options).verdicts) {
-        if (verdict.power) powers.push_back(fmt::format("{} {:.2f}", verdict.id, *verdict.power));
+      const ComputedFigure figure = compute_figure(store, wanted, options);
+      for (const Verdict& verdict : figure.verdicts) {
+        if (figure.unmeasured > 0 && verdict.looks.size() > 1) {
+          powers.push_back(fmt::format("{} unknown ({} not measured yet: `figures` measures them)",
+                                       verdict.id, counted(figure.unmeasured, "run")));
+        } else if (verdict.power) {
+          powers.push_back(fmt::format("{} {:.2f}", verdict.id, *verdict.power));
+        }
       }
     } catch (const UsageError&) {  // `figures` will refuse this figure and say why
     } catch (const AnalysisError&) {

@@ -200,6 +200,13 @@ ComputedFigure compute_figure(const Store& store, const WantedFigure& wanted,
     providers.insert(providers.begin(), scalars_provider);
   }
   made += measure_runs(store, runs, providers, measuring);
+  for (const FrameRun& run : runs) {
+    const bool ended = std::ranges::none_of(
+        frame.pending, [&](const FrameRun& planned) { return planned.stage.id == run.stage.id; });
+    made.unmeasured += ended && std::ranges::any_of(run.checkpoints, [](const auto& one) {
+                         return !one.lacking.empty() && one.state != CheckpointState::pruned;
+                       });
+  }
   std::ranges::for_each(runs, leave_out_unmeasured);
   made.lineage = {{"figure", made.name},
                   {"scale", made.scale},
@@ -277,7 +284,9 @@ ComputedFigure draw_figure(Store& store, const WantedFigure& wanted, const Figur
     });
   };
   require(".verdict.json", "{\n \"claims\": [", "");
-  require(".verdict.csv", "claim", "");  // always the first column
+  require_ours(base + ".verdict.csv", [](std::string_view beginning) {
+    return beginning.starts_with("id,claim") || beginning.starts_with("claim");  // older: no `id`
+  });
   require(".caption.txt", "Figure " + made.name + ". ", "");
   require(".lineage.json", "{\n \"analysis_version\": ", "\n \"figure\": \"" + made.name + "\"");
   const auto write = [&](const char* ending, const std::string& text) {

@@ -30,6 +30,7 @@ struct ComputedFigure : MeasureOutcome, FigureResult {
   nlohmann::ordered_map<std::string, std::size_t> runs_by_variant;
   std::size_t runs = 0;
   std::size_t checkpoints = 0;
+  std::size_t unmeasured = 0;  ///< ended runs that lack measures of a checkpoint that is not pruned
   std::vector<std::string> notes;            ///< CollectedRuns::notes, and why values are missing
   std::vector<std::string> empty;            ///< names of tables without a value to draw
   std::string why_empty;                     ///< "Nothing is drawn in S2b: ..."; "" if all is drawn

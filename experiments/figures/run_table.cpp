@@ -91,7 +91,11 @@ Column outcome_of(const char* name, const char* meaning, OnsetMethod find) {
   return {{name, std::string("outcome (observed, never, before_start or unclear) of ") + meaning},
           [find](const Row& row) -> TableCell {
             if (row.history == nullptr || row.history->checkpoints.empty()) return {};
-            return std::string(name_of(find(*row.history).observed));
+            const Missing missing = find(*row.history).missing;
+            return missing == Missing::nothing     ? "observed"
+                   : missing == Missing::too_short ? "never"
+                   : missing == Missing::too_late  ? "before_start"
+                                                   : "unclear";
           }};
 }
 

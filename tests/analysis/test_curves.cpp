@@ -361,6 +361,17 @@ TEST(OwnPlot, OfTheOnsetOfEachRunWithAClaim) {
       << to_csv(drawn.tables.at(0));
   EXPECT_TRUE(has(caption_of("", drawn.tables),
                   "1 of 9 runs end before the onset; the means use their censored values"));
+  // An expression is averaged like the measure: a hundred times as much.
+  const auto hundredfold =
+      plot_figure({.name = "own", .y = "100*onset_size_phi", .x = "drag_kg_per_s"}).make(runs);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const TableRow &of_phi = drawn.tables.at(0).rows.at(k),
+                   &of_expression = hundredfold.tables.at(0).rows.at(k);
+    EXPECT_NEAR(std::get<double>(of_expression.at(2)), 100 * std::get<double>(of_phi.at(2)), 1e-5);
+    EXPECT_EQ(of_expression.at(4), of_phi.at(4)) << "runs, with the censored one";
+  }
+  EXPECT_TRUE(has(caption_of("", hundredfold.tables),
+                  "1 of 9 runs end before the onset; the means use their censored values"));
   ClaimSpec claim{.id = "own",
                   .compare = "onset_size_phi",
                   .between = {{{{"drag_kg_per_s", 0.002}}, {{"drag_kg_per_s", 0.001}}}},

@@ -30,7 +30,7 @@ TEST(OnsetBySize, IsInterpolatedBetweenCycles) {
   });
   run.parameters["amplitude_rad"] = 0.05;  // critical: 10 grains
   const RunOnset found = onset_by_size(run);
-  ASSERT_EQ(found.observed, Observed::yes);
+  ASSERT_EQ(found.missing, Missing::nothing);
   EXPECT_DOUBLE_EQ(found.phi, 0.6425);
   EXPECT_DOUBLE_EQ(found.cycle, 2.5);
 }
@@ -46,15 +46,15 @@ TEST(OnsetBySize, IsTheFirstPassage) {
 
 TEST(Onset, IsCensoredAtEitherEnd) {
   for (const OnsetMethod method : {onset_by_size, onset_by_slope}) {
-    EXPECT_EQ(method(logistic(0.66, 20)).observed, Observed::never);
-    EXPECT_EQ(method(logistic(0.62, 20)).observed, Observed::before_start);
+    EXPECT_EQ(method(logistic(0.66, 20)).missing, Missing::too_short);
+    EXPECT_EQ(method(logistic(0.62, 20)).missing, Missing::too_late);
   }
 }
 
 TEST(OnsetBySlope, IsTheSteepestPoint) {
   for (const double onset : {0.644, 0.646, 0.655}) {
     const RunOnset found = onset_by_slope(logistic(onset));
-    ASSERT_EQ(found.observed, Observed::yes);
+    ASSERT_EQ(found.missing, Missing::nothing);
     EXPECT_NEAR(found.phi, onset, 0.0006);
     EXPECT_NEAR(found.cycle, (onset - 0.63) / 0.0005, 1.5);
   }
@@ -65,8 +65,7 @@ TEST(OnsetBySlope, IsUnclearWithoutAWindow) {
   FrameRun run = logistic(0.646);
   run.checkpoints = {run.checkpoints[0], run.checkpoints[60]};
   const RunOnset found = onset_by_slope(run);
-  EXPECT_EQ(found.observed, Observed::unclear);
-  EXPECT_EQ(name_of(found.observed), "unclear");
+  EXPECT_EQ(found.missing, Missing::undefined);
 }
 
 TEST(Onset, CountsCensoredRuns) {

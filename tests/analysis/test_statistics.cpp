@@ -227,17 +227,19 @@ TEST(Repetitions, OfAMeanScatterAsItsError) {
   EXPECT_TRUE(std::isinf(repetitions(4, 16, mean_over(values)).low)) << "too few runs";
 }
 
-TEST(Ratio, AddsTheErrorsThatMoveItThere) {
+TEST(RelativeDifference, AddsTheErrorsThatMoveItThere) {
   const Estimate a = {.value = 20, .interval = {20 * std::exp(-0.3), 40}, .runs = 7, .spread = 3};
   const Estimate b = {.value = 10, .interval = {5, 10 * std::exp(0.4)}, .runs = 9};
-  const Estimate found = ratio(a, b);
-  EXPECT_DOUBLE_EQ(found.value, 2);
-  EXPECT_NEAR(found.interval.low, 2 * std::exp(-0.5), 1e-12);
-  EXPECT_NEAR(found.interval.high, 2 * std::exp2(std::sqrt(2.0)), 1e-12);
+  const Estimate found = relative_difference(a, b).value();
+  EXPECT_DOUBLE_EQ(found.value, 1);
+  EXPECT_NEAR(found.interval.low, 2 * std::exp(-0.5) - 1, 1e-12);
+  EXPECT_NEAR(found.interval.high, 2 * std::exp2(std::sqrt(2.0)) - 1, 1e-12);
   EXPECT_EQ(found.runs, 7U);
   EXPECT_NEAR(found.spread, 0.3, 1e-12);
-  EXPECT_EQ(ratio({.value = 20, .interval = {-infinite, 40}}, b).interval.low, 0);
-  EXPECT_EQ(ratio(a, {.value = 10, .interval = {-infinite, 11}}).interval.high, infinite);
+  const Estimate unbounded = {.value = 20, .interval = {-infinite, 40}};
+  EXPECT_EQ(relative_difference(unbounded, b)->interval.low, -1);
+  EXPECT_EQ(relative_difference(a, unbounded)->interval.high, infinite);
+  EXPECT_FALSE(relative_difference(a, {}) || relative_difference({}, b));
 }
 
 double coverage_of_bootstrap(std::size_t runs) {

@@ -81,13 +81,14 @@ TEST(Verdict, HeadlineCountsTheRulings) {
 }
 
 TEST(Verdict, WhatEnteredIsOneTable) {
-  Verdict first = decide({"a, b", 2}, "q", between(0, 1), 6, "");
+  Verdict first = decide({.text = "a, b", .margin = 2, .id = "S2.a"}, "q", between(0, 1), 6, "");
   first.entered = {.columns = {"group", "value"}, .rows = {{"x", 1.5}, {"y", TableCell()}}};
   Verdict second = decide({"c", 2}, "q", between(0, 1), 6, "");
   second.entered = {.columns = {"group", "size", "grew"},
                     .rows = {{"z", std::int64_t{3}, std::int64_t{4}}}};
-  EXPECT_EQ(to_csv(entered_table(std::vector{first, second})),
-            "claim,group,value,size,grew\n\"a, b\",x,1.5,,\n\"a, b\",y,,,\nc,z,,3,4\n");
+  EXPECT_EQ(
+      to_csv(entered_table(std::vector{first, second})),
+      "id,claim,group,value,size,grew\nS2.a,\"a, b\",x,1.5,,\nS2.a,\"a, b\",y,,,\n,c,z,,3,4\n");
 }
 
 TEST(Verdict, WordsHaveNoInfinities) {

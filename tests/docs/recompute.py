@@ -173,7 +173,8 @@ def estimate(claim, rows):
         away = lambda value: (value - off) / (abs(off) if relative else 1)
         return one_mean(*columns(by_packing(rows, away).values()), claim["level"])
     a, b = (by_packing(group, np.log if relative else float) for group in groups)  # relative: of logarithms
-    paired = {row["packing"] for row in groups[0]} & {row["packing"] for row in groups[1]}
+    most = max(len({row["packing"] for row in group}) for group in groups)
+    paired = 4 * len(a.keys() & b.keys()) >= 3 * most  # otherwise Welch's test of all runs
     if paired:
         a, b = ({packing: group[packing] for packing in a if packing in b} for group in (a, b))
     found = difference(columns(a.values()), columns(b.values()), paired, claim["level"])
@@ -462,7 +463,8 @@ def main():
             continue
         entered = list(csv.DictReader(path.open()))
         for claim in json.loads(path.with_suffix(".json").read_text())["claims"]:
-            rows = [row for row in entered if row["claim"] == claim["claim"]]
+            key = "id" if entered and "id" in entered[0] else "claim"  # older files have no column `id`
+            rows = [row for row in entered if row[key] == claim[key]]
             if claim["interval"] is None:
                 continue
             again = expected(claim, rows) if rows and "log2" not in claim["quantity"] else None

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
 #include <set>
 #include <tuple>
 
@@ -17,6 +18,7 @@
 #include "protocols/rest.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/io/child_process.hpp"
+#include "provenance/io/file.hpp"
 #include "provenance/sha256.hpp"
 #include "tests/experiments/drawing.hpp"
 #include "tests/support/text.hpp"
@@ -392,7 +394,14 @@ TEST_F(DrawFigure, VerdictsAndLineageAreWrittenAndRecorded) {
   EXPECT_EQ(verdict.at("figure"), "S2");
   EXPECT_EQ(verdict.at("verdict"), "3 undecided");
   EXPECT_TRUE(
-      files.at("S2.verdict.csv").starts_with("claim,group,seed,packing,value,missing,cycle\n"));
+      files.at("S2.verdict.csv").starts_with("id,claim,group,seed,packing,value,missing,cycle\n"));
+  const auto entered = folder_.path() / "figures/tiny/base/S2.verdict.csv";
+  std::ofstream(entered) << "claim,group\n";  // of an earlier version of the program
+  draw("figures");
+  EXPECT_EQ(contents("figures"), files);
+  std::ofstream(entered) << "group,claim\n";
+  EXPECT_THROW(draw("figures"), NotOurs);
+  std::filesystem::remove(entered);
   EXPECT_EQ(verdict.at("runs"), (nlohmann::json{{"fluid=still", 1}, {"fluid=cell", 1}}));
   EXPECT_EQ(verdict.at("claims").size(), 3U);
   const auto lineage = nlohmann::json::parse(files.at("S2.lineage.json"));
