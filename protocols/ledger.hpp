@@ -23,8 +23,6 @@ struct Ledger {
 
   double dissipation() const { return lost_by_grains + lost_by_wall; }
   double stored() const { return elastic + kinetic + gravitational + load; }
-  /// Error of the energy balance.
-  double missing() const { return stored() + dissipation() - work_of_walls; }
 };
 
 /// Simulates `steps` steps from `start` and takes a sample every `stride` steps. Integrates the

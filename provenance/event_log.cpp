@@ -150,6 +150,24 @@ Event read_event(const sqlite::Statement& row) {
 
 }  // namespace
 
+void require_no_results(const std::filesystem::path& log, const std::string& state) {
+  namespace fs = std::filesystem;
+  const fs::path folder = log.parent_path(), cache = folder / DerivedCache::kFile;
+  std::error_code unreadable;
+  bool found = fs::exists(cache) && !fs::is_empty(cache, unreadable);
+  for (fs::recursive_directory_iterator entry(folder / "objects", unreadable), end;
+       !found && entry != end; entry.increment(unreadable)) {
+    found = entry->path().extension() == ".h5";
+  }
+  // An unreadable folder may have results.
+  if (!found && (!unreadable || unreadable == std::errc::no_such_file_or_directory)) return;
+  throw StoreDamaged(fmt::format(
+      "{}: the log is {}, but the store has checkpoints or measures that were recorded in a log; "
+      "restore the log from a backup. Without it, choose another store with --store and compute "
+      "the runs again",
+      log.string(), state));
+}
+
 sqlite::Database open_database(const std::filesystem::path& file, Access access) {
   if (access != Access::read) require_writable(file);
   if (access == Access::create && !std::filesystem::exists(file)) create_whole(file);
@@ -161,13 +179,7 @@ sqlite::Database open_database(const std::filesystem::path& file, Access access)
       "PRAGMA cell_size_check=ON; PRAGMA foreign_keys=ON;"
       "PRAGMA synchronous=EXTRA;");
   if (database.integer("PRAGMA page_count") == 0) {
-    const std::filesystem::path folder = file.parent_path(), objects = folder / "objects";
-    std::error_code unreadable;  // an unreadable folder counts as not empty
-    if (std::filesystem::exists(folder / DerivedCache::kFile) ||
-        (std::filesystem::exists(objects) && !std::filesystem::is_empty(objects, unreadable))) {
-      throw StoreDamaged(file.string() +
-                         ": the log is empty; restore it from a backup, or choose another store");
-    }
+    require_no_results(file, "empty (0 bytes)");
     if (access != Access::create) {
       throw NotFound(file.string() +
                      ": the log is empty, because the creation of this store was interrupted; "
@@ -259,34 +271,36 @@ std::vector<Event> EventLog::events(std::string_view stream, std::string_view ty
   return query.all(read_event);
 }
 
-void EventLog::for_each(const std::function<void(const Event&)>& visit) const {
-  sqlite::Statement query(database_, std::string(kSelect) + "ORDER BY seq");
+void EventLog::for_each(const std::function<void(const Event&)>& visit, std::uint64_t from) const {
+  sqlite::Statement query(database_, std::string(kSelect) + "WHERE seq >= ? ORDER BY seq", from);
   while (query.step()) visit(read_event(query));
 }
 
-std::optional<ChainFault> EventLog::verify_chain() const {
+std::optional<ChainFault> EventLog::verify_chain(std::uint64_t from) const {
   std::optional<ChainFault> first;
   std::map<std::string, std::uint64_t> versions;
-  Head last{.seq = 0, .hash = zeros()};
-  for_each([&](const Event& event) {
-    if (first) return;
-    const std::uint64_t version = ++versions[event.stream];
-    std::string fault;
-    if (event.seq != last.seq + 1) {
-      fault = fmt::format("event {} is missing here", last.seq + 1);
-    } else if (event_hash(event) != event.hash) {
-      fault = "its hash does not match its content: one of its fields was changed";
-    } else if (event.prev_hash != last.hash) {
-      fault = "prev_hash is not the previous event's hash";
-    } else if (event.version != version) {
-      fault = fmt::format("its version is {}, but should be {}", event.version, version);
-    }
-    if (!fault.empty()) {
-      first = {event.seq,
-               fmt::format("event {} ({} of {}): {}", event.seq, event.type, event.stream, fault)};
-    }
-    last = {.seq = event.seq, .hash = event.hash};
-  });
+  Head last{.seq = from - 1, .hash = hash_at(from - 1)};
+  for_each(
+      [&](const Event& event) {
+        if (first) return;
+        const std::uint64_t version = from > 1 ? event.version : ++versions[event.stream];
+        std::string fault;
+        if (event.seq != last.seq + 1) {
+          fault = fmt::format("event {} is missing here", last.seq + 1);
+        } else if (event_hash(event) != event.hash) {
+          fault = "its hash does not match its content: one of its fields was changed";
+        } else if (event.prev_hash != last.hash) {
+          fault = "prev_hash is not the previous event's hash";
+        } else if (event.version != version) {
+          fault = fmt::format("its version is {}, but should be {}", event.version, version);
+        }
+        if (!fault.empty()) {
+          first = {event.seq, fmt::format("event {} ({} of {}): {}", event.seq, event.type,
+                                          event.stream, fault)};
+        }
+        last = {.seq = event.seq, .hash = event.hash};
+      },
+      from);
   return first;
 }
 

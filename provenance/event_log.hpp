@@ -27,6 +27,10 @@ inline constexpr std::int64_t kSchemaVersion = 3;
 /// requires it.
 sqlite::Database open_database(const std::filesystem::path& file, Access access);
 
+/// For a log that is missing or empty: throws StoreDamaged if its folder has checkpoints or
+/// measures, because the log was lost. `state` is the state of the log in the message.
+void require_no_results(const std::filesystem::path& log, const std::string& state);
+
 /// One row of the log.
 struct Event {
   std::uint64_t seq = 0;      ///< 1, 2, 3, ... in the whole log
@@ -94,10 +98,12 @@ class EventLog {
   std::string hash_at(std::uint64_t seq) const;
   /// Events in order. An empty `stream` means all streams, and an empty `type` means all types.
   std::vector<Event> events(std::string_view stream = "", std::string_view type = "") const;
-  /// Calls visit(event) for all events in order, without loading the whole log into memory.
-  void for_each(const std::function<void(const Event&)>& visit) const;
-  /// Recomputes every hash. Returns the first fault, or nothing when the chain is valid.
-  std::optional<ChainFault> verify_chain() const;
+  /// Calls visit(event) for all events from `from` on in order, without loading all of them into
+  /// memory.
+  void for_each(const std::function<void(const Event&)>& visit, std::uint64_t from = 1) const;
+  /// Recomputes every hash from event `from` on. Returns the first fault, or nothing when the chain
+  /// is valid.
+  std::optional<ChainFault> verify_chain(std::uint64_t from = 1) const;
 
  private:
   sqlite::Database& database_;

@@ -395,6 +395,39 @@ void derive_projections(Database& database, const EventLog& log,
   log.for_each([&database](const Event& event) { apply(database, event); });
 }
 
+void require_complete(const Database& database, const EventLog& log) {
+  // An event adds a row with the event's `seq`, or changes an earlier row that has the same key.
+  constexpr std::string_view lost = R"sql(
+SELECT stream FROM events WHERE
+  type = 'CheckpointRecorded' AND seq NOT IN (SELECT seq FROM checkpoints) AND NOT EXISTS (
+    SELECT 1 FROM checkpoints WHERE run = substr(stream, 5)
+    AND sha256 = json_extract(payload, '$.sha256'))
+  OR type = 'RunDeclared' AND seq NOT IN (SELECT ordinal FROM memberships) AND NOT EXISTS (
+    SELECT 1 FROM memberships WHERE run = substr(stream, 5)
+    AND json_array(experiment, scale, variant, manifest)
+      = json_extract(payload, '$.membership.experiment', '$.membership.scale',
+                     '$.membership.variant', '$.membership.manifest'))
+UNION ALL SELECT stream FROM events WHERE version = 1
+  AND substr(stream, 1, instr(stream, '/')) IN ('run/', 'figure/', 'manifest/')
+  AND substr(stream, instr(stream, '/') + 1) NOT IN (
+    SELECT id FROM runs UNION ALL SELECT name FROM figures UNION ALL SELECT sha256 FROM manifests)
+UNION ALL SELECT 'run/' || run FROM memberships JOIN runs ON run = id
+  WHERE kind <> 'prepare' AND (experiment, scale) NOT IN (SELECT experiment, scale FROM newest)
+LIMIT 1)sql";
+  Statement old(database, "SELECT 1 FROM pragma_user_version WHERE user_version < ?",
+                std::uint64_t{kSchemaVersion});
+  if (old.step()) return;
+  const std::uint64_t newest = log.head().seq;
+  const auto fault = log.verify_chain(std::max<std::uint64_t>(newest, 1));
+  Statement count(database, "SELECT count(*) FROM events");
+  if (fault || (count.step() && count.u64(0) != newest)) {
+    throw StoreDamaged(fmt::format("{}: {}; run `verify`", database.name(),
+                                   fault ? fault->message : "events are missing in the log"));
+  }
+  Statement stream(database, lost);
+  if (stream.step()) throw damaged_table(database, "lacks a row of " + stream.text(0));
+}
+
 void shadow_projections(Database& database, const EventLog& log) {
   std::string tables = projection_tables;
   for (std::size_t at = 0; (at = tables.find("CREATE TABLE", at)) != tables.npos; at += 12) {

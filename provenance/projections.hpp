@@ -37,6 +37,11 @@ std::string try_apply(sqlite::Database& database, const Event& event);
 /// Drops the tables and derives them from the whole log.
 void derive_projections(sqlite::Database& database, const EventLog& log,
                         const sqlite::WriteTransaction& lock);
+/// Throws StoreDamaged, with a remedy, if an event is missing, if the newest event does not match
+/// its hash, or if a table lacks the row of an event. Does not compute the hashes of the other
+/// events or compare the values in the rows, so the cost is small. Tables of an older schema are
+/// not checked.
+void require_complete(const sqlite::Database& database, const EventLog& log);
 /// Derives the tables in memory for a connection that only reads. SQL statements then use these
 /// tables instead of the stored tables of an older schema. Skips events that cannot be applied.
 void shadow_projections(sqlite::Database& database, const EventLog& log);

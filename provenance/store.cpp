@@ -45,11 +45,7 @@ std::filesystem::path prepare_folder(std::filesystem::path folder, Access access
         fmt::format("{}: a store is a folder, but this is a file; choose another path", name));
   }
   if (fs::exists(folder / kLogFile)) return folder;
-  if (fs::exists(folder / "objects")) {
-    throw StoreDamaged(fmt::format(
-        "{}: there are checkpoints but no {}: the log is lost; restore it from a backup", name,
-        kLogFile));
-  }
+  require_no_results(folder / kLogFile, "missing");
   if (access != Access::create) {
     throw NotFound(fmt::format(
         "{}: there is no store here; make one with `shearcell run`, or choose a store with --store",
@@ -166,7 +162,10 @@ Store::~Store() {
 }
 
 Store::Snapshot::Snapshot(const Store& store)
-    : scoped_lock(store.mutex_), ReadTransaction(store.database_) {}
+    : scoped_lock(store.mutex_), ReadTransaction(store.database_) {
+  if (!store.is_complete_) require_complete(store.database_, store.log_);
+  store.is_complete_ = true;
+}
 
 Store::Writing::Writing(Store& store)
     : scoped_lock(store.mutex_), WriteTransaction(store.must_write()) {}
@@ -457,7 +456,7 @@ Stage Store::find_stage(std::string_view prefix) const {
 }
 
 std::optional<CheckpointRecord> Store::find_checkpoint(std::string_view prefix) const {
-  const std::scoped_lock guard(mutex_);
+  const Snapshot snapshot(*this);
   const auto found = query_all_checkpoints(database_, prefix);
   if (found.empty()) return std::nullopt;
   require_one("checkpoints", prefix, found, &CheckpointRecord::sha256);
@@ -513,7 +512,7 @@ std::optional<Checkpoint> Store::load_if_readable(const CheckpointRecord& record
 }
 
 std::vector<FigureRecord> Store::figures() const {
-  const std::scoped_lock guard(mutex_);
+  const Snapshot snapshot(*this);
   return query_figures(database_);
 }
 

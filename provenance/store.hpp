@@ -167,7 +167,8 @@ class Store {
 
   /// While a Snapshot exists, all reads through this store see one state of the log, and no other
   /// program can write to the log. Keep it only while rows are read, not while files are read or
-  /// results are computed.
+  /// results are computed. The first Snapshot of a Store calls require_complete(), which throws
+  /// StoreDamaged if events or rows are missing.
   struct Snapshot : private std::scoped_lock<std::recursive_mutex>, sqlite::ReadTransaction {
     explicit Snapshot(const Store& store);
   };
@@ -241,6 +242,7 @@ class Store {
 
   std::filesystem::path folder_;
   Access access_;
+  mutable bool is_complete_ = false;  ///< whether require_complete() was called
   ObjectStore objects_;
   mutable std::recursive_mutex mutex_;  ///< guards all members below
   mutable sqlite::Database database_;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <exception>
 #include <filesystem>
 #include <iterator>
 #include <limits>
@@ -198,7 +199,7 @@ std::vector<std::string> write_records(const Store& store, const PlacedRun& run,
   sources.read_run(run.stage.id);
   for (const CheckpointRecord& record : records) {
     const ExportedState frame = frame_of(store.load_checkpoint(record), record,
-                                         {shown_place(run), {}, run.stage}, &sources, every);
+                                         {shown_place(run), {}, run.stage}, sources, every);
     unread += frame.unread;
     for (const FrameWriter& write : writers) write(frame);
   }
@@ -286,10 +287,11 @@ struct Exported {
 
 /// Writes one run to PATH if `single` is true, else all runs into the folder PATH. Writes into a
 /// temporary folder first and moves the complete result to PATH. An export that is killed or fills
-/// the disk thus leaves nothing at PATH.
+/// the disk thus leaves nothing at PATH. Of several runs, leaves out and names those that are
+/// damaged or have nothing to export; throws if no run is left.
 std::vector<Exported> write_all(const Store& store, const std::vector<PlacedRun>& runs,
                                 const ExportFormat& format, const ExportOptions& options,
-                                bool single, MeasureOutcome& unread) {
+                                bool single, MeasureOutcome& unread, Context& context) {
   // A path such as "frames/" has an empty file name.
   const fs::path given = fs::absolute(options.out);
   const fs::path out = given.has_filename() ? given : given.parent_path();
@@ -307,17 +309,25 @@ std::vector<Exported> write_all(const Store& store, const std::vector<PlacedRun>
              : (out.parent_path() / ("." + out.filename().string() + ".tmp-")).string());
   const fs::path staged = stage.path() / out.filename();
   std::vector<Exported> done;
+  std::exception_ptr left_out;  // why a run was left out; a damaged one if there is any
   if (!single) fs::create_directory(staged);
   for (const PlacedRun& run : runs) {
     const std::string name = single ? "" : entry_name(run, format);
+    const fs::path path = single ? staged : staged / name;
     try {
-      auto files = write_run(store, run, format, options, single ? staged : staged / name, unread);
+      auto files = write_run(store, run, format, options, path, unread);
       done.push_back({run.stage.id, single ? fs::path(options.out) : out / name, std::move(files)});
     } catch (const NothingToExport& problem) {
-      if (single || (&run == &runs.back() && done.empty())) throw;
-      print_stderr("left out: {}\n", problem.what());
+      if (!single) print_stderr("left out: {}\n", problem.what());
+      if (!left_out) left_out = std::current_exception();
+    } catch (const StoreDamaged& damage) {
+      if (!single) print_stderr("left out: run {:.8}: {}\n", run.stage.id, damage.what());
+      left_out = std::current_exception();
+      fs::remove_all(path);
+      fail(context, kStoreDamaged);
     }
   }
+  if (done.empty()) std::rethrow_exception(left_out);
   if (stream) {
     write_result(options.out, read_plain(staged, SIZE_MAX - 1).value());
     return done;
@@ -334,7 +344,8 @@ void export_runs(const ExportOptions& options, Context& context) {
   MeasureOutcome unread;
   const std::vector<PlacedRun> runs = wanted_runs(store, options);
   const bool single = !options.runs.empty() && runs.size() == 1;
-  const std::vector<Exported> done = write_all(store, runs, format, options, single, unread);
+  const std::vector<Exported> done =
+      write_all(store, runs, format, options, single, unread, context);
   print_problems(unread, "not measured", context);
   if (is_stream(options.out)) return;
   if (context.json) {

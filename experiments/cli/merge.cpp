@@ -18,10 +18,17 @@ void merge(const std::vector<std::string>& sources, Context& context) {
   Store store(context.store, Access::create);
   std::vector<Finding> refused;
   const auto reports = merge_stores(store, {sources.begin(), sources.end()}, {}, &refused);
+  MeasureOutcome not_copied;
   for (const Finding& finding : refused) {
-    print_stderr("no measures were copied from {}: {}\n", finding.subject, finding.message);
-    fail(context, finding.severity == Finding::Severity::error ? kStoreDamaged : kOtherError);
+    const std::string what = finding.subject + ": " + finding.message;
+    if (finding.severity == Finding::Severity::error) {
+      not_copied.damage.insert(what);
+    } else {
+      not_copied.cache_trouble = what;
+    }
   }
+  print_problems(not_copied, "measures not copied", context);
+  if (!not_copied.cache_trouble.empty()) fail(context, kOtherError);
   for (const MergeReport& report : reports) {
     if (report.absent == 0) continue;
     warn(context,
@@ -61,7 +68,8 @@ merging a source again has no effect. If the stores have different versions of a
 show the version that was registered last, and `figures` names the runs that it leaves out. To show
 all runs, run one manifest that lists all of them; only missing runs are computed.
 Cached measures of a source are copied if recomputing three sampled checkpoints gives the same
-values. Lost or pruned files of this store are not restored: copy them, or use `regenerate`.
+values. Measures of pruned checkpoints that differ from their digests in the log are left out. Lost
+or pruned files of this store are not restored: copy them, or use `regenerate`.
 Examples:
   shearcell merge task-1 task-2 --store all)");
 }

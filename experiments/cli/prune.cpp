@@ -147,12 +147,12 @@ void prune(const PruneOptions& options, Context& context) {
                 {"bytes", bytes_of(all)},
                 {"pruned", go},
                 {"bytes_freed", freed.bytes}});
-  } else if (go) {
+  } else if (freed.bytes > 0) {
     fmt::print("{} measured, then {} freed; `shearcell regenerate` recomputes the deleted files\n",
                counted(freed.measured, "checkpoint"),
                format_bytes(static_cast<double>(freed.bytes)));
   } else if (any) {
-    fmt::print("Nothing was freed. Use --yes to delete these files.\n");
+    fmt::print("Nothing was freed.{}\n", go ? "" : " Use --yes to delete these files.");
   }
 }
 

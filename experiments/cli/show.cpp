@@ -180,24 +180,19 @@ void show_run(const Store& store, const Stage& stage, Context& context) {
   print_lines(measures);
 }
 
-/// Prints the checkpoint and its measures. If the file was pruned, prints the recorded
-/// observables instead of the measures.
+/// Prints the checkpoint and its measures. If the file was pruned, the measures must be cached.
 void show_checkpoint(const Store& store, const CheckpointRecord& record, Context& context) {
   const bool pruned = record.state == CheckpointState::pruned;
-  Facts more, measures;
-  if (pruned) {
-    for (const auto& [name, value] : record.observables) {
-      measures.push_back({"", value, name, fmt::format("{:.6g}", value)});
-    }
-  } else {
+  Facts more;
+  if (!pruned) {
     const Checkpoint checkpoint = store.load_checkpoint(record);
     const Eigen::Index grains = checkpoint.state.position.cols();
     const std::size_t wall_grains = checkpoint.cell.wall_grains.size();
     more = {
         {"grains", grains, "grains", fmt::format("{}, and {} wall grains", grains, wall_grains)},
         {"wall_grains", wall_grains}};
-    measures = measures_at(store, record, context);
   }
+  const Facts measures = measures_at(store, record, context);
   const std::string file =
       pruned ? fmt::format("pruned; `shearcell regenerate {:.12}` recomputes it", record.sha256)
              : fmt::format("{} ({}, hash verified)", record.file,
@@ -216,7 +211,7 @@ void show_checkpoint(const Store& store, const CheckpointRecord& record, Context
   }
   nlohmann::json all = to_json(facts_of(record));
   all.update(to_json(facts));
-  if (!pruned) all["measures"] = to_json(measures);
+  all["measures"] = to_json(measures);
   print_json(all);
 }
 

@@ -67,12 +67,8 @@ std::string describe(const Replay& replay) {
 nlohmann::json replay(const VerifyOptions& options, Context& context) {
   Store store(context.store, Access::write);
   const std::uint64_t seed = options.seed.value_or(seed_of(store.head()));
-  std::vector<CheckpointRecord> all = replayable(store);
   std::size_t left_out = 0, skipped = 0;
-  for (const Stage& stage : store.stages()) {
-    left_out += store.checkpoints(stage.id, Listed::and_pruned).size();
-  }
-  left_out -= all.size();
+  std::vector<CheckpointRecord> all = replayable(store, &left_out);
   // The replay of a checkpoint at step 0 computes no steps and proves little. Such checkpoints are
   // used only if there are no others.
   const auto is_beginning = [](const CheckpointRecord& record) { return record.step == 0; };
@@ -141,8 +137,7 @@ MeasureCheck audit(const Store& store, const VerifyOptions& options, VerifyRepor
   if (!report.ok() || report.count(Finding::Severity::unread) > 0) return measures;
   for (Finding& finding : check_runs(store)) report.findings.push_back(std::move(finding));
   if (!report.ok()) return measures;
-  measures = check_measures(store, store.folder(), options.measures,
-                            options.seed.value_or(seed_of(report.head)));
+  measures = check_measures(store, options.measures, options.seed.value_or(seed_of(report.head)));
   for (const Finding& finding : measures.findings) report.findings.push_back(finding);
   return measures;
 }

@@ -82,13 +82,10 @@ std::string frame_name(const ExportedState& frame) {
 }
 
 ExportedState frame_of(const Checkpoint& checkpoint, const CheckpointRecord& record, const Run& run,
-                       const MeasureSources* sources, std::uint64_t every) {
-  const MeasureSources alone(record.run, run.stage);
+                       const MeasureSources& sources, std::uint64_t every) {
   ExportedState frame;
-  const Measures measures =
-      (sources == nullptr ? alone : *sources)
-          .measures_of(record, every, checkpoint, analyse_stored(record, checkpoint), enters_frames,
-                       frame.unread);
+  const Measures measures = sources.measures_of(
+      record, every, checkpoint, analyse_stored(record, checkpoint), enters_frames, frame.unread);
   const double rate = measures.number("shear_rate_per_s");  // known only for a shear
   static_cast<Particles&>(frame) =
       particles_of(checkpoint.cell, pose_of(checkpoint), checkpoint.state,

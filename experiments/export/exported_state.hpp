@@ -50,11 +50,9 @@ struct ExportedState : Particles {
 /// The name of a frame in file names: its cycle, or "step45600" for a packing, which has no cycles.
 std::string frame_name(const ExportedState& frame);
 
-/// Makes a frame from a checkpoint. Before this call, sources->read_run() must have been called for
-/// the checkpoint's run. If `sources` is null, measures that need earlier checkpoints are NaN.
-/// `every`: as in ToMeasure. Throws like analyse_stored().
-ExportedState frame_of(const Checkpoint& checkpoint, const CheckpointRecord& record = {},
-                       const Run& run = {}, const MeasureSources* sources = nullptr,
-                       std::uint64_t every = 1);
+/// Makes a frame from a checkpoint. Before this call, sources.read_run() must have been called for
+/// the checkpoint's run. `every`: as in ToMeasure. Throws like analyse_stored().
+ExportedState frame_of(const Checkpoint& checkpoint, const CheckpointRecord& record, const Run& run,
+                       const MeasureSources& sources, std::uint64_t every);
 
 }  // namespace shearcell

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <string_view>
 
 #include "core/diagnostics.hpp"
@@ -78,7 +77,7 @@ std::string lammps_title(const ExportedState& f) {
 }  // namespace
 
 FrameWriter extxyz_writer(const std::filesystem::path& file, LengthUnit unit) {
-  return [unit, out = std::make_shared<NewFile>(file)](const ExportedState& f) {
+  return [unit, file](const ExportedState& f) {
     const double length = metres(unit, 2 * f.radius);
     std::string text = fmt::format("{}\n{}\n", f.particles(), xyz_comment(f, unit, length));
     for (std::size_t i = 0; i < f.particles(); ++i) {
@@ -92,16 +91,16 @@ FrameWriter extxyz_writer(const std::filesystem::path& file, LengthUnit unit) {
       }
       text += '\n';
     }
-    out->add(text);
+    append(file, text);
   };
 }
 
 FrameWriter lammps_writer(const std::filesystem::path& folder) {
   return [folder](const ExportedState& f) {
     const std::string name = "frame_" + frame_name(f);
-    NewFile(folder / (name + ".data")).add(lammps_data(f, lammps_title(f)));
+    append(folder / (name + ".data"), lammps_data(f, lammps_title(f)));
     if (!f.continued) return;
-    NewFile(folder / ("in." + name)).add(lammps_script(*f.continued, name + ".data", name));
+    append(folder / ("in." + name), lammps_script(*f.continued, name + ".data", name));
   };
 }
 
@@ -118,7 +117,7 @@ FrameWriter contacts_writer(const std::filesystem::path& folder) {
                      f.stiffness_N_per_m * one.overlap * c.units.diameter_m,
                      fmt::join(one.normal, ","));
     });
-    NewFile(folder / fmt::format("contacts_{}.csv", frame_name(f))).add(text);
+    append(folder / fmt::format("contacts_{}.csv", frame_name(f)), text);
   };
 }
 

@@ -31,11 +31,11 @@ class PolyData {
   }
 
   void write(const std::filesystem::path& file, const std::string& piece) const {
-    NewFile(file).add(
-        "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" "
-        "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<PolyData>\n" +
-        piece + "</PolyData>\n<AppendedData encoding=\"raw\">\n_" + data_ +
-        "\n</AppendedData>\n</VTKFile>\n");
+    append(file,
+           "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" "
+           "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<PolyData>\n" +
+               piece + "</PolyData>\n<AppendedData encoding=\"raw\">\n_" + data_ +
+               "\n</AppendedData>\n</VTKFile>\n");
   }
 
  private:

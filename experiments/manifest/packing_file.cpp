@@ -34,6 +34,13 @@ using std::string_view;
 enum Quantity { kX, kY, kZ, kVx, kVy, kVz, kDiameter, kId, kWall, kQuantities };
 constexpr const char* kColumns[] = {"x", "y", "z", "vx", "vy", "vz"};
 
+/// The first bytes of compressed files, and the commands that decompress them.
+constexpr std::pair<string_view, const char*> kCompressed[] = {{"\x1f\x8b", "gzip -dc"},
+                                                               {"BZh9", "bzip2 -dc"},
+                                                               {"\xfd\x37zXZ", "xz -dc"},
+                                                               {"\x28\xb5\x2f\xfd", "zstd -dc"},
+                                                               {"PK\3\4", "unzip -p"}};
+
 /// What a column with one of these names contains. If several columns could contain the same
 /// quantity, those with the lowest rank are read.
 struct Meaning {
@@ -243,6 +250,12 @@ class PackingReader {
     if (text_.size() > kLargestPackingFile) {
       refuse_file(fmt::format("is larger than {} MiB", kLargestPackingFile >> 20),
                   "Leave out columns that are not positions, velocities or radii.");
+    }
+    for (const auto& [beginning, command] : kCompressed) {
+      if (!text_.starts_with(beginning)) continue;
+      refuse_file("is compressed", fmt::format("Decompress it with `{} {} > NEW_FILE`, and write "
+                                               "the name of the new file in the manifest.",
+                                               command, file_));
     }
     check_characters(text_, file_, "Save the positions as text: extended XYZ, LAMMPS data or CSV.");
     if (text_.starts_with("\xEF\xBB\xBF")) text_.remove_prefix(3);
@@ -614,7 +627,7 @@ class PackingReader {
 
   static char separator_of(string_view header) {
     const std::size_t at = field_end(header, ",;\t");
-    return at == header.npos ? ',' : header[at];
+    return at == header.npos ? ' ' : header[at];
   }
 
   /// The line without the # and the blanks that numpy writes at the beginning.
@@ -625,11 +638,14 @@ class PackingReader {
   void read_csv() {
     remedy_ = string(kFormats) +
               " Velocities are vx_m_per_s and so on. The unit can be m, d, mm, cm or um.";
-    const string_view header = header_of(lines_.front());
-    grains_ = {.header = lines_.front(),
-               .columns = columns_of(header, separator_of(header)),
-               .separator = separator_of(header),
-               .rows = rows(std::span(lines_).subspan(1))};
+    const string_view stated = unquoted(lines_.front());  // Excel reads and writes a line `sep=;`
+    const bool is_stated = lower(stated.substr(0, 4)) == "sep=" && lines_.size() > 1;
+    const string_view line = lines_[is_stated ? 1 : 0], header = header_of(line);
+    const char separator = is_stated && stated.size() == 5 ? stated[4] : separator_of(header);
+    grains_ = {.header = line,
+               .columns = columns_of(header, separator),
+               .separator = separator,
+               .rows = rows(std::span(lines_).subspan(is_stated ? 2 : 1))};
     units_in_names_ = true;
   }
 
@@ -637,18 +653,25 @@ class PackingReader {
   /// unknown unit.
   void take_units_of_text(string_view line) {
     static const std::regex unit(
-        "\\b(?:(?:units?|lengths?|distances?|positions?|coord\\w{0,9})\\b"
+        "\\b(?:(?:units?|lengths?|distances?|pos(?:itions?)?|coord\\w{0,9}|[xyz](?=\\s{0,9}[\\[(]))"
+        "\\b"
         "(?:[\\s=:\"'\\[(]|of|in|are|is|lengths?|distances?|positions?){1,12}|"
-        "in\\s{1,9}(?!(?:real|metal|micro|nano|electron|si|lj|cgs)\\b))"
-        "(real|metal|micro|nano|electron|si|lj|cgs|m|d|(?:[cmunp]|\xC2\xB5|\xCE\xBC)m|fractional|"
-        "scaled|reduced(?!\\s{1,9}unit)|(?:milli|centi|micro|nano)?met(?:er|re)s?|angstroms?)\\b"
+        "in\\s{1,9}(?!(?:real|metal|micro|nano|electron|si|lj|cgs|aa?)\\b))"
+        "(real|metal|micro|nano|electron|si|lj|cgs|m|d|(?:[ckmunp]|\xC2\xB5|\xCE\xBC)m|fractional|"
+        "scaled|reduced(?!\\s{1,9}unit)|(?:milli|centi|micro|nano|kilo)?met(?:er|re)s?|microns?|"
+        "aa?|ang|a\\.u\\.|au|inch(?:es)?|f(?:ee)?t|mils?|pixels?|voxels?|"
+        "[0-9.]{1,20}(?:e|\\^)[-+]?[0-9]{1,4}\\s{0,9}[cmunp]?m)(?!\\w)"
         "(?!\\s*=|\\s{1,9}dimension|[-/^:])|"
+        // No packing of this program is in one of these units, wherever a text names them.
+        "(?:^|[^*/\\w])((?:a|\xC3[\x85\xA5])ng?str(?:o|\xC3\xB6)ms?|\xC3\x85|"
+        "\xE2\x84\xAB|bohrs?|atomic units?)(?![\\w^*\xC2\xE2-])|"
         "\\b(?:fractional|scaled|reduced)\\s{1,9}coord|"
         "\\b(?:(?:lattice|length|box|position)_?)?scale(?:_?factor)?=[0-9.]+(?![\\w.])",
         std::regex::icase);
     const string text(line.substr(0, 20'000));
     for (std::sregex_iterator at(text.begin(), text.end(), unit), end; at != end; ++at) {
-      const std::size_t group = (*at)[1].matched ? 1 : 0;
+      const std::size_t group = (*at)[1].matched ? 1 : (*at)[2].matched ? 2 : 0;
+      if (at->str(group) == "a") continue;  // the article; the unit is written A
       take_unit(line.substr(static_cast<std::size_t>(at->position(group)),
                             static_cast<std::size_t>(at->length(group))));
     }

@@ -179,7 +179,17 @@ std::string wrong_measure(const Store& store, const CheckpointRecord& record,
   return "";
 }
 
-void check_pruned(const Store& store, DerivedCache& cache, MeasureCheck& check) {
+std::vector<CheckpointRecord> all_checkpoints(const Store& store,
+                                              Listed listed = Listed::recorded) {
+  std::vector<CheckpointRecord> all;
+  for (const Stage& stage : store.stages()) {
+    std::ranges::move(store.checkpoints(stage.id, listed), std::back_inserter(all));
+  }
+  return all;
+}
+
+/// Compares the cached measures of pruned checkpoints with the log. Returns what was read from it.
+MeasureSources check_pruned(const Store& store, DerivedCache& cache, MeasureCheck& check) {
   MeasureSources sources(store);
   using Severity = Finding::Severity;
   const auto note = [&](Severity severity, const std::string& run, const std::string& what) {
@@ -202,23 +212,25 @@ void check_pruned(const Store& store, DerivedCache& cache, MeasureCheck& check) 
     note(Severity::error, "", cache.trouble());
     note(Severity::error, "", cache.replaced());
   }
+  return sources;
 }
 
-/// Copies the measures that the store lacks. Returns why they cannot be copied; "" if they can.
-std::string copy_measures(Store& store, DerivedCache& from) {
+/// Copies the measures that the store lacks. Leaves out measures that differ from their digests in
+/// the log of the store or of the source. Returns why they cannot be copied; "" if they can.
+std::string copy_measures(Store& store, DerivedCache& from, const MeasureSources& of_source) {
   DerivedCache into(store.folder());
   MeasureSources sources(store);
   std::vector<DerivedObject> missing;
   std::map<std::string, CheckpointRecord> unnamed;  // pruned, without a logged digest
-  for (const Stage& stage : store.stages()) {
-    for (const CheckpointRecord& record : store.checkpoints(stage.id, Listed::and_pruned)) {
-      for (CachedMeasure& one : cached_measures(record, from, sources)) {
-        const auto same = sources.is_as_pruned(record, one.object);
-        if (!same.value_or(true) || into.get({&one.object.key, 1}).front()) continue;
-        if (!same && record.state == CheckpointState::pruned)
-          unnamed.emplace(record.sha256, record);
-        missing.push_back(std::move(one.object));
+  for (const CheckpointRecord& record : all_checkpoints(store, Listed::and_pruned)) {
+    for (CachedMeasure& one : cached_measures(record, from, sources)) {
+      const auto same = sources.is_as_pruned(record, one.object);
+      if (!same.value_or(true) || !of_source.is_as_pruned(record, one.object).value_or(true) ||
+          into.get({&one.object.key, 1}).front()) {
+        continue;
       }
+      if (!same && record.state == CheckpointState::pruned) unnamed.emplace(record.sha256, record);
+      missing.push_back(std::move(one.object));
     }
   }
   if (!missing.empty()) into.put(missing);
@@ -231,13 +243,12 @@ std::string copy_measures(Store& store, DerivedCache& from) {
 
 }  // namespace
 
-std::vector<CheckpointRecord> replayable(const Store& store) {
-  std::vector<CheckpointRecord> found;
+std::vector<CheckpointRecord> replayable(const Store& store, std::size_t* left_out) {
   RunLineages known;
-  for (const Stage& stage : store.stages()) {
-    std::ranges::copy_if(store.checkpoints(stage.id, Listed::and_pruned), std::back_inserter(found),
-                         [&](const auto& c) { return !why_not_again(store, c, known); });
-  }
+  std::vector<CheckpointRecord> found = all_checkpoints(store, Listed::and_pruned);
+  const std::size_t excluded =
+      std::erase_if(found, [&](const auto& c) { return why_not_again(store, c, known); });
+  if (left_out != nullptr) *left_out = excluded;
   return found;
 }
 
@@ -305,16 +316,10 @@ MeasureCheck check_sample(const Store& store, const std::filesystem::path& folde
   return check;
 }
 
-MeasureCheck check_measures(const Store& store, const std::filesystem::path& folder,
-                            std::size_t count, std::uint64_t seed) {
-  std::vector<CheckpointRecord> all;
-  for (const Stage& stage : store.stages()) {
-    const std::vector<CheckpointRecord> of_stage = store.checkpoints(stage.id);
-    all.insert(all.end(), of_stage.begin(), of_stage.end());
-  }
-  MeasureCheck check = check_sample(store, folder, std::move(all), count, seed);
-  DerivedCache cache(folder, Access::read);
-  check_pruned(Store(folder, Access::read), cache, check);
+MeasureCheck check_measures(const Store& store, std::size_t count, std::uint64_t seed) {
+  MeasureCheck check = check_sample(store, store.folder(), all_checkpoints(store), count, seed);
+  DerivedCache cache(store.folder(), Access::read);
+  check_pruned(store, cache, check);
   return check;
 }
 
@@ -328,12 +333,17 @@ std::vector<MergeReport> merge_stores(Store& store,
   const std::uint64_t seed = seed_of(store.head());
   for (std::size_t k = 0; k < sources.size(); ++k) {
     const std::filesystem::path& source = sources[k];
-    MeasureCheck check = check_measures(store, source, kSampled, seed);
-    reports[k].absent = check.absent;
-    if (check.findings.empty()) {
-      DerivedCache from(source, Access::read);
-      const std::string why = copy_measures(store, from);
+    MeasureCheck check = check_sample(store, source, all_checkpoints(store), kSampled, seed);
+    const bool is_sound = check.findings.empty();
+    DerivedCache from(source, Access::read);
+    try {
+      const Store of_source(source, Access::read);
+      const MeasureSources log = check_pruned(of_source, from, check);
+      reports[k].absent = check.absent;
+      const std::string why = is_sound ? copy_measures(store, from, log) : "";
       if (!why.empty()) check.findings.push_back({Finding::Severity::note, source, "", why});
+    } catch (const StoreDamaged& damage) {  // in tables of the source, which Store::merge() ignores
+      check.findings.push_back({Finding::Severity::error, source, "", damage.what()});
     }
     for (Finding& finding : check.findings) finding.subject = source;
     if (refused != nullptr) {

@@ -21,8 +21,9 @@ namespace shearcell {
 std::vector<Finding> check_runs(const Store& store);
 
 /// All checkpoints, including pruned ones, that this program can recompute bit for bit. Checkpoints
-/// from LAMMPS or from a program with another bits_version are excluded. Order: stage, then step.
-std::vector<CheckpointRecord> replayable(const Store& store);
+/// from LAMMPS or from a program with another bits_version are excluded, and counted in `left_out`.
+/// Order: stage, then step.
+std::vector<CheckpointRecord> replayable(const Store& store, std::size_t* left_out = nullptr);
 
 /// A random sample of `count` different records, or all records if there are fewer. Equal seeds
 /// give equal samples.
@@ -49,14 +50,13 @@ MeasureCheck check_sample(const Store& store, const std::filesystem::path& folde
                           std::uint64_t seed);
 inline constexpr std::size_t kSampled = 3;  ///< checkpoints that `merge` and `prune` sample
 
-/// check_sample() of all checkpoints. For all pruned checkpoints of the store in `folder`, also
-/// compares the digests of the cached measures with the digests in the log of that store.
-MeasureCheck check_measures(const Store& store, const std::filesystem::path& folder,
-                            std::size_t count, std::uint64_t seed);
+/// check_sample() of all checkpoints. For all pruned checkpoints, also compares the digests of the
+/// cached measures with the digests in the log.
+MeasureCheck check_measures(const Store& store, std::size_t count, std::uint64_t seed);
 
-/// Calls Store::merge(). Then checks a sample of three checkpoints of each source with
-/// check_measures(). If a source has no errors, copies its cached measures. Appends the errors, and
-/// notes on measures that could not be copied, to `refused`.
+/// Calls Store::merge(). Then copies the cached measures of each source, except measures that the
+/// log of the source shows to be altered, and except all measures if check_sample() of three
+/// checkpoints finds an error. Appends what was not copied, with the reason, to `refused`.
 std::vector<MergeReport> merge_stores(Store& store,
                                       const std::vector<std::filesystem::path>& sources,
                                       const std::set<std::string>& runs = {},

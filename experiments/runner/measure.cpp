@@ -285,10 +285,6 @@ MeasureOutcome measure_checkpoints(const Store& store, std::span<const ToMeasure
   return Measuring(store, checkpoints, providers, options).run();
 }
 
-MeasureSources::MeasureSources(const std::string& id, const Stage& stage) {
-  runs_[id].facts = facts_of(stage);
-}
-
 void MeasureSources::read_run(const std::string& run) {
   const auto [entry, first] = runs_.try_emplace(run);
   if (!first) return;
@@ -312,9 +308,10 @@ void MeasureSources::read_run(const std::string& run) {
 
 std::optional<bool> MeasureSources::is_as_pruned(const CheckpointRecord& record,
                                                  const DerivedObject& object) const {
-  const auto& all = runs_.at(record.run).digests;
-  const auto log = all.find(record.sha256);
-  if (log == all.end()) return true;
+  const auto run = runs_.find(record.run);
+  if (run == runs_.end()) return true;
+  const auto log = run->second.digests.find(record.sha256);
+  if (log == run->second.digests.end()) return true;
   const auto [name, digest] = digest_entry(object);
   const auto found = log->second.find(name);
   return found == log->second.end() ? std::nullopt : std::optional(found->second == digest);

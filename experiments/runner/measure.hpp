@@ -81,8 +81,6 @@ MeasureOutcome read_in_parallel(std::size_t count, std::size_t workers,
 class MeasureSources {
  public:
   explicit MeasureSources(const Store& store) : store_(&store) {}
-  /// Sources for one run with this id, without a store. Earlier checkpoints are not available.
-  MeasureSources(const std::string& id, const Stage& stage);
 
   /// Reads the log of a run, unless it has been read. Call this before you pass a checkpoint of the
   /// run to another function. After that, any number of threads may call the other functions.
@@ -99,8 +97,8 @@ class MeasureSources {
                  std::uint64_t every) const;
 
   /// Whether a cached object has the digest that was logged when the checkpoint was pruned. True if
-  /// the log has no digests for this checkpoint. Empty if the log has digests for this checkpoint
-  /// but no digest for this object.
+  /// the log has no digests for this checkpoint, or if its run was not read. Empty if the log has
+  /// digests for this checkpoint but no digest for this object.
   std::optional<bool> is_as_pruned(const CheckpointRecord& record,
                                    const DerivedObject& object) const;
 
@@ -145,7 +143,7 @@ class MeasureSources {
     std::map<std::string, Digests> digests = {};                 // by SHA-256 of the checkpoint
   };
 
-  const Store* store_ = nullptr;
+  const Store* store_;
   std::map<std::string, Run> runs_;  // by id
 };
 

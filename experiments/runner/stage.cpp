@@ -458,9 +458,6 @@ class StageAttempt {
       if (other && options_.continuing)
         options_.continuing("the starting state cannot be repeated bit for bit: " + *other);
       return compute();
-    } catch (const ConcurrencyConflict& conflict) {
-      if (started) release(conflict);
-      throw;
     } catch (const Interrupted&) {
       return interrupted();
     } catch (const ProgramError& error) {
@@ -475,9 +472,10 @@ class StageAttempt {
                          {"step", failure.step}});
       return StageOutcome::failed;
     } catch (const std::exception& failure) {
-      // The disk, memory or store failed. release() is called even if start_stage() threw, because
-      // start_stage() may have recorded the start of the attempt before it threw.
-      release(failure);
+      // The disk, memory or store failed, or another process computes the stage. start_stage() may
+      // have recorded the start of the attempt before it threw, except if it found a conflict.
+      if (started || dynamic_cast<const ConcurrencyConflict*>(&failure) == nullptr)
+        release(failure);
       throw;
     }
   }
@@ -587,16 +585,14 @@ bool newest_is_sound(const Store& store, const Stage& stage) {
 
 // --- Recomputing a recorded state ---
 
-// A larger double gives a larger integer. The integers of adjacent doubles differ by 1.
-std::int64_t ordered_bits(double x) {
-  const auto bits = std::bit_cast<std::int64_t>(x);
-  return bits >= 0 ? bits : std::int64_t{-1} - (bits & INT64_MAX);
-}
-
 std::uint64_t ulp_distance(double a, double b) {
-  const std::int64_t x = ordered_bits(a), y = ordered_bits(b);
-  return x > y ? static_cast<std::uint64_t>(x) - static_cast<std::uint64_t>(y)
-               : static_cast<std::uint64_t>(y) - static_cast<std::uint64_t>(x);
+  // A larger double gives a larger integer. The integers of adjacent doubles differ by 1.
+  const auto ordered = [](double x) {
+    const auto bits = std::bit_cast<std::uint64_t>(x), sign = std::uint64_t{1} << 63;
+    return bits < sign ? bits + sign : ~bits;
+  };
+  const std::uint64_t x = ordered(a), y = ordered(b);
+  return x > y ? x - y : y - x;
 }
 
 void compare(const char* field, double a, double b, Divergence& worst, Eigen::Index grain = -1) {
@@ -752,9 +748,8 @@ StageOutcome run_stage(Store& store, const std::string& id, const StageOptions& 
 }
 
 bool is_done(const Store& store, const Stage& stage) {
-  return outlook(stage, asks_of(stage.memberships), store.checkpoints(stage.id, Listed::and_pruned))
-             .done &&
-         newest_is_sound(store, stage);
+  const auto known = store.checkpoints(stage.id, Listed::and_pruned);
+  return outlook(stage, asks_of(stage.memberships), known).done && newest_is_sound(store, stage);
 }
 
 std::optional<CheckpointRecord> starting_state(const Store& store, const Stage& stage,

@@ -165,19 +165,11 @@ void write_output(const fs::path& path, std::string_view bytes) {
   replace_file(folder, path, bytes_of(bytes), false);
 }
 
-NewFile::NewFile(const fs::path& path)
-    : path_(path),
-      file_(open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666)) {
-  if (!file_.valid()) fail_on(path_, "write");
-}
-
-void NewFile::add(std::string_view text) {
-  try {
-    write_all(file_, bytes_of(text), path_);
-  } catch (const std::system_error&) {
-    unlink(path_.c_str());
-    throw;
-  }
+void append(const fs::path& path, std::string_view text) {
+  constexpr int flags = O_WRONLY | O_CREAT | O_APPEND | O_NOFOLLOW | O_CLOEXEC;
+  const Descriptor file(open(path.c_str(), flags, 0666));
+  if (!file.valid()) fail_on(path, "write");
+  write_all(file, bytes_of(text), path);
 }
 
 TemporaryFolder::TemporaryFolder(const std::string& prefix) {

@@ -73,17 +73,8 @@ void require_ours(const std::filesystem::path& path,
 /// Creates the folder of `path` if it is missing.
 void write_output(const std::filesystem::path& path, std::string_view bytes);
 
-/// A new file that is written in parts. The constructor throws std::system_error if the file exists
-/// or cannot be created. If writing fails, add() deletes the file and throws std::system_error.
-class NewFile {
- public:
-  explicit NewFile(const std::filesystem::path& path);
-  void add(std::string_view text);
-
- private:
-  std::filesystem::path path_;
-  Descriptor file_;
-};
+/// Appends to a file, which is created if it is missing. Errors are thrown by fail_on().
+void append(const std::filesystem::path& path, std::string_view text);
 
 /// A new temporary folder that only this user can read; the destructor deletes it with its content.
 /// The folder lies in TMPDIR (by default /tmp), unless `prefix` is an absolute path. The name is

@@ -229,7 +229,7 @@ TEST_F(Prune, DeletesNothingIfMeasuresCannotBeKept) {
   fs::create_directories(path("shearcell-store/derived.sqlite/in-the-way"));
   const std::size_t files = objects();
   expect(1, {"prune", "--keep-every", "5", "--yes"},
-         {"measures cannot be cached", "kept, because measuring failed: "});
+         {"measures cannot be cached", "kept, because measuring failed: ", "Nothing was freed.\n"});
   EXPECT_EQ(objects(), files);
   EXPECT_EQ(pruned_events(), 0U);
 }
@@ -516,10 +516,52 @@ TEST_F(Prune, AMergeTakesMeasuresThatTheLogsCover) {
   EXPECT_EQ(Store(path("few"), Access::read).head().seq, events) << "merged again";
   expect(0, {"rebuild", "--store", "few"});
   expect(0, {"verify", "--store", "few"}, {"nothing was changed\n"});
-  // Altered ones are not taken.
-  forge_measures("few", "scalars");
-  expect(4, {"merge", "few", "--store", "united"}, {"scalars-"});
-  EXPECT_FALSE(fs::exists(path("united/derived.sqlite")));
+}
+
+TEST_F(Prune, AMergeLeavesOutAlteredMeasuresOnly) {
+  start_again();
+  expect(0, {"prune", "--last-too", "--yes"});
+  const auto count = [&](const std::string& store) {
+    sqlite::Database cache(path(store) / "derived.sqlite", Access::read);
+    return std::pair(cache.integer("SELECT count(*) FROM derived"),
+                     cache.integer("SELECT count(*) FROM derived WHERE measure LIKE 'scalars%'"));
+  };
+  const auto [all, scalars] = count("shearcell-store");
+  ASSERT_GT(all, scalars);
+  // So little that a recomputed sample does not show it.
+  measures("scalars", [](nlohmann::json& content) {
+    content["phi"] = content.at("phi").get<double>() * (1 + 1e-12);
+  })(path("shearcell-store"));
+  expect(4, {"merge", "shearcell-store", "--store", "united"},
+         {"measures not copied: shearcell-store: derived.sqlite: scalars-", " more checkpoints"});
+  EXPECT_EQ(count("united"), std::pair(all - scalars, std::int64_t{0}));
+  // The log of this store does not have the digests.
+  fs::copy(path("whole"), path("kept"), fs::copy_options::recursive);
+  fs::remove(path("kept/derived.sqlite"));
+  expect(4, {"merge", "shearcell-store", "--store", "kept"}, {"measures not copied: "});
+  EXPECT_GT(count("kept").first, 0);
+  EXPECT_EQ(count("kept").second, 0);
+}
+
+TEST_F(Prune, AMergeNamesTheMeasuresOfASourceWithDamagedTables) {
+  start_again();
+  expect(0, {"table"});
+  sql("DELETE FROM checkpoints")(path("shearcell-store"));
+  expect(4, {"merge", "shearcell-store", "--store", "united"},
+         {"measures not copied: shearcell-store", "run `rebuild`", "merged "});
+  expect(0, {"verify", "--store", "united"});
+}
+
+TEST_F(Prune, ShowsTheMeasuresOfAPrunedCheckpoint) {
+  start_again();
+  const Store store(path("shearcell-store"), Access::read);
+  const std::string sha256 = store.checkpoints(last_run()).at(1).sha256;
+  const nlohmann::json before = json({"show", sha256, "--json"}).at("measures");
+  expect(0, {"prune", "--last-too", "--yes"});
+  EXPECT_EQ(json({"show", sha256, "--json"}).at("measures"), before);
+  expect(0, {"show", sha256}, {"pruned; `shearcell regenerate", "phi "});
+  fs::remove(path("shearcell-store/derived.sqlite"));
+  expect(0, {"show", sha256}, {"not measured: "});
 }
 
 TEST_F(Prune, RunKeepsEveryKthFile) {

@@ -285,5 +285,30 @@ TEST_F(CommandLineTable, ExportsSelectedRunsCompletelyOrNotAtAll) {
   }
 }
 
+TEST_F(CommandLineTable, ExportsTheOtherRunsIfOneIsDamaged) {
+  const auto damage = [&](const nlohmann::json& run) {
+    const Store store(path("shearcell-store"), Access::read);
+    truncate_file(path("shearcell-store/" + store.checkpoints(run.at("id")).back().file));
+    return run.at("id").get<std::string>().substr(0, 8);
+  };
+  const auto runs = json({"status", "--json"}).at("runs");
+  std::vector<nlohmann::json> sheared;
+  for (const auto& run : runs) {
+    if (run.at("kind") == "shear" && run.at("experiment") == "tiny") sheared.push_back(run);
+  }
+  ASSERT_EQ(sheared.size(), 2U);
+  const std::string first = damage(sheared[0]);
+  const auto export_all = [&](const std::string& format, const std::string& out) {
+    return Arguments{"export", "--experiment", "tiny", "--to", format, "--out", out};
+  };
+  for (const std::string format : {"extxyz", "vtk", "ro-crate"}) {
+    expect(4, export_all(format, format), {"left out: run " + first, "objects/"});
+    EXPECT_EQ(std::distance(fs::directory_iterator(path(format)), {}), 1) << format;
+  }
+  damage(sheared[1]);
+  expect(4, export_all("extxyz", "none"), {"left out: run " + first});
+  EXPECT_FALSE(fs::exists(path("none")));
+}
+
 }  // namespace
 }  // namespace shearcell::test

@@ -23,11 +23,27 @@ std::vector<Case> damaged_logs() {
   return {
       reported("log_cut_in_half", "status", 4, log(truncate_file), "damaged", kBackup),
       reported("log_empty", "status", 4, log(written("")), "the log is empty", kBackup),
+      reported(
+          "log_empty_with_folders_of_checkpoints", "verify", 2,
+          [=](const fs::path& store) {
+            interrupted(store);
+            fs::create_directory(store / "objects/ab");
+            write_bytes(store / "objects/ab/.tmp-99999999-0", "x");
+            write_bytes(store / "derived.sqlite", "");
+          },
+          "creation of this store", "shearcell run"),
+      reported(
+          "log_empty_with_measures", "run m.yaml", 4,
+          [=](const fs::path& store) {
+            interrupted(store);
+            write_bytes(store / "derived.sqlite", "x");
+          },
+          "the log is empty", kBackup),
       reported("log_empty_of_a_new_store", "verify", 2, interrupted, "creation of this store",
                "shearcell run"),
       reported("log_empty_of_a_new_store_that_run_completes", "run m.yaml --cycles 1", 0,
                interrupted, "3 stages computed"),
-      reported("log_missing", "run m.yaml", 4, log(removed), "the log is lost", kBackup),
+      reported("log_missing", "run m.yaml", 4, log(removed), "the log is missing", kBackup),
       reported("log_is_text", "status", 4, log(written(std::string(9999, 'x'))), "not a database",
                "from a backup"),
       reported("log_is_folder", "status", 4, log(folder_instead), odd, "remove it"),
@@ -142,7 +158,33 @@ std::vector<Case> damaged_events() {
 }
 
 std::vector<Case> damaged_tables() {
+  const std::string rebuild = "run `rebuild`", last = "seq = (SELECT max(seq) FROM events)";
+  const auto lacks = [&](const char* name, const char* command, const std::string& rows) {
+    return reported(name, command, 4, sql("PRAGMA foreign_keys = OFF; DELETE FROM " + rows),
+                    "a derived table lacks a row of ", rebuild);
+  };
   return {
+      lacks("checkpoint_lacking", "table", "checkpoints WHERE cycle = 1"),
+      lacks("checkpoint_lacking_in_the_status", "status", "checkpoints WHERE cycle = 1"),
+      lacks("checkpoint_lacking_in_an_export", "export --to vtk --out e",
+            "checkpoints WHERE step = (SELECT max(step) FROM checkpoints)"),
+      lacks("membership_lacking", "status",
+            "memberships WHERE ordinal = (SELECT max(ordinal) FROM "
+            "memberships)"),
+      lacks("run_lacking", "report", "runs WHERE kind = 'shear'"),
+      lacks("run_lacking_with_all_its_rows", "table",
+            "runs; DELETE FROM memberships; DELETE FROM checkpoints"),
+      lacks("manifest_lacking", "figures S2", "manifests"),
+      lacks("newest_lacking", "table", "newest"),
+      reported("rows_lacking_until_rebuild", "rebuild", 0, sql("DELETE FROM checkpoints"),
+               "rebuilt from"),
+      reported("event_lacking", "status", 4, sql("DELETE FROM events WHERE seq = 3"),
+               "events are missing in the log", "run `verify`"),
+      reported("newest_event_changed", "table", 4,
+               sql("UPDATE events SET recorded_at = '2000' WHERE " + last),
+               "one of its fields was changed", "run `verify`"),
+      reported("newest_event_of_another_chain", "status", 4,
+               sql("UPDATE events SET prev_hash = hash WHERE " + last), "run `verify`"),
       reported("unknown_state", "status", 4, sql("UPDATE runs SET state = 'x'"),
                "unknown state 'x'", "run `rebuild`"),
       reported("labels_no_json", "status", 4, sql("UPDATE memberships SET labels = '{'"),

@@ -31,9 +31,7 @@ class Measure : public DrawingTest {
     return read_bytes(folder / "S2a.csv") + read_bytes(folder / "S2b.csv");
   }
   /// Of `verify --measures` with every checkpoint.
-  std::vector<Finding> findings() const {
-    return check_measures(store_, store_.folder(), 1000, 1).findings;
-  }
+  std::vector<Finding> findings() const { return check_measures(store_, 1000, 1).findings; }
   std::filesystem::path cache() const { return store_.folder() / DerivedCache::kFile; }
   void sql(const std::string& statement) const {
     sqlite::Database(cache(), Access::write).execute(statement);

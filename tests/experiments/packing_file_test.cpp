@@ -92,6 +92,18 @@ const std::vector<BadPacking> kBad = {
     {"Binary", "a.data", std::string("12\0\0", 4),
      "a.data:1:3: holds the control character 0x00. Save the positions as text: extended XYZ, "
      "LAMMPS data or CSV."},
+    {"Gzip", "a.csv.gz", "\x1f\x8b\x08",
+     "a.csv.gz: is compressed. Decompress it with `gzip -dc a.csv.gz > NEW_FILE`, and write the "
+     "name "
+     "of the new file in the manifest."},
+    {"Zip", "a.zip", "PK\3\4",
+     "a.zip: is compressed. Decompress it with `unzip -p a.zip > NEW_FILE`, "
+     "and write the name of the new file in the manifest."},
+    {"SeparatorAlone", "a.csv", "sep=;\n", "a.csv:1:1: the column x is missing. " + kCsv},
+    {"DecimalCommaOfExcel", "a.csv", "sep=;\nx;y;z\n1,5;2;3\n",
+     "a.csv:3:1: x: is not a number between -1e100 and 1e100 (got 1,5)." + kNoNumber},
+    {"HeaderWithBlanksInNames", "a.txt", "x [d] y [d] z [d]\n1 1 1\n",
+     "a.txt:2:1: has 3 fields instead of 6. " + kFields},
     {"Latin1", "a.csv", "x,y,z\n1,2,\xe9\n",
      "a.csv:2:5: is not valid UTF-8. Save the file as UTF-8 text."},
     {"Prose", "a.txt", "Dear reader\n", "a.txt:1:1: the column x is missing. " + kCsv},
@@ -257,6 +269,14 @@ TEST(PackingFile, FormatAndUnitMayBeWrittenInManyWays) {
   expect_two("a.csv", "# x_d, y_d, z_d\n1, 1, 1\n3, 3, 3\n", kUnstated);
   expect_two("a.txt", "z_m\tname\ty_m\tx_m\n0.003\tA\t0.003\t0.003\n0.009\tA\t0.009\t0.009\n",
              kUnstated);
+  for (const std::string& first :
+       {std::string("sep=;"), std::string("\"sep=;\""), std::string("SEP=")}) {
+    expect_two("a.csv", first + "\r\nx;y;z\r\n1;1;1\r\n3;3;3\r\n", kInD);
+  }
+  expect_two("a.csv", "sep=|\nx|y|z\n1|1|1\n3|3|3\n", kInD);
+  expect_two("a.csv", "sep=\t\nx_d\ty_d\tz_d\n1\t1\t1\n3\t3\t3\n", kUnstated);
+  expect_two("a.txt", "# x y z\n1 1 1\n3 3 3\n", kInD);
+  expect_two("a.txt", "   x_d    y_d   z_d\n  1.0   1.0   1.0\n  3.0   3.0   3.0\n", kUnstated);
   expect_two("a.csv", "id,x,y,z\n2,3,3,3\n1,1,1,1\n", kInD);
   expect_two("a.data", data(kBounds, kAtoms), kInD);
   expect_two("a.data", data("", "Atoms\n\n2 1 3 3 3 0 0 0\n1 1 1 1 1 0 0 0\n"), kInD);
@@ -588,6 +608,43 @@ TEST(PackingFile, ABoxOrUnitInAnotherFormIsRefused) {
   expect_unread("a.xyz", xyz("scale=0.001", rows), "scale=0.001");
   expect_unread("a.xyz", xyz(kLattice + "; units: nm", rows), "nm");
   expect_unread("a.xyz", xyz("fractional coordinates", rows), "fractional coord");
+}
+
+TEST(PackingFile, UnitsInProseAreReadRefusedOrNamed) {
+  struct Prose {
+    const char *comment, *unit;  // unit "": named
+  };
+  for (const auto& [comment, unit] :
+       std::vector<Prose>{{"coordinates in Å", "Å"},
+                          {"energy in eV, positions [Å], forces in eV/Å", "Å"},
+                          {"lengths in \u212b", "\u212b"},
+                          {"all in Ångström", "Ångström"},
+                          {"i = 0, x [Angstrom]", "Angstrom"},
+                          {"positions in A", "A"},
+                          {"units: Ang", "Ang"},
+                          {"velocities in Å/ps", "Å"},
+                          {"Positions in Bohr", "Bohr"},
+                          {"units: a.u.", "a.u."},
+                          {"atomic units", "atomic units"},
+                          {"lengths in inches", "inches"},
+                          {"coordinates in microns", "microns"},
+                          {"unit of length: 1e-10 m", "1e-10 m"},
+                          {"positions in 10^-6 m", "10^-6 m"},
+                          {"x (nm) y (nm) z (nm)", "nm"},
+                          {" i = 0, time = 0.000, E = -17.16", ""},
+                          {"forces in eV/Å, stress in eV/Å^3", ""},
+                          {"positions in a box", ""},
+                          {"grains in a cell, at rest", ""},
+                          {"molecule A of an ASE run", ""},
+                          {"volume 9 Å\u00b3", ""}}) {
+    const std::string text = xyz(comment, "A 1 1 1\nA 3 3 3\n");
+    if (*unit != 0) {
+      expect_unread("a.xyz", text, unit);
+    } else {
+      expect_two("a.xyz", text, kInD);
+    }
+  }
+  expect_two("a.xyz", xyz("x (mm) y (mm) z (mm)", "A 3 3 3\nA 9 9 9\n"), kUnstated);
 }
 
 TEST(PackingFile, VelocitiesUnderOtherNamesAreRefused) {

@@ -52,6 +52,18 @@ std::vector<Checkpoint> checkpoints() {
   return {upright, tilted};
 }
 
+/// A frame of a run that has no other checkpoints.
+ExportedState frame_of(const Checkpoint& checkpoint, CheckpointRecord record = {}, Run run = {}) {
+  const TemporaryFolder folder;
+  Store store(folder.path() / "store", Access::create);
+  run.stage.id = record.run = checkpoint.run;
+  run.stage.memberships = {{.place = run.place}};
+  store.declare_stage(run.stage);
+  MeasureSources sources(store);
+  sources.read_run(record.run);
+  return shearcell::frame_of(checkpoint, record, run, sources, 1);
+}
+
 nlohmann::json rows(const Eigen::Matrix3Xd& columns) {
   nlohmann::json all = nlohmann::json::array();
   for (Eigen::Index i = 0; i < columns.cols(); ++i) {

@@ -137,22 +137,17 @@ TEST(Output, ToAnUnreadableFolderIsRejected) {
   fs::permissions(folder.path(), fs::perms::owner_all);
 }
 
-TEST(NewFile, LeavesNothingAfterAFailedWrite) {
+TEST(Append, NamesTheFileThatCannotBeWritten) {
   const TemporaryFolder folder;
   const fs::path path = folder.path() / "new";
-  NewFile file(path);
-  file.add("abc");
-  EXPECT_THROW(NewFile{path}, std::system_error) << "it exists";
-  EXPECT_EQ(read_bytes(path), "abc");
-  rlimit old{};
-  getrlimit(RLIMIT_FSIZE, &old);
-  const rlimit full{5, old.rlim_max};
-  signal(SIGXFSZ, SIG_IGN);
-  setrlimit(RLIMIT_FSIZE, &full);
-  EXPECT_THROW(file.add("defgh"), std::system_error);
-  setrlimit(RLIMIT_FSIZE, &old);
-  signal(SIGXFSZ, SIG_DFL);
-  EXPECT_TRUE(fs::is_empty(folder.path()));
+  append(path, "abc");
+  append(path, "de");
+  EXPECT_EQ(read_bytes(path), "abcde");
+  fs::create_symlink(path, folder.path() / "link");
+  for (const char* name : {"link", "missing/new"}) {
+    expect_refused<std::system_error>([&] { append(folder.path() / name, "x"); }, {name});
+  }
+  EXPECT_EQ(read_bytes(path), "abcde");
 }
 
 }  // namespace
