@@ -200,10 +200,11 @@ ComputedFigure compute_figure(const Store& store, const WantedFigure& wanted,
     providers.insert(providers.begin(), scalars_provider);
   }
   made += measure_runs(store, runs, providers, measuring);
+  std::set<std::string_view> pending;
+  for (const FrameRun& planned : collected.pending) pending.insert(planned.stage.id);
   for (const FrameRun& run : runs) {
-    const bool ended = std::ranges::none_of(
-        frame.pending, [&](const FrameRun& planned) { return planned.stage.id == run.stage.id; });
-    made.unmeasured += ended && std::ranges::any_of(run.checkpoints, [](const auto& one) {
+    made.unmeasured += !pending.contains(run.stage.id) &&
+                       std::ranges::any_of(run.checkpoints, [](const auto& one) {
                          return !one.lacking.empty() && one.state != CheckpointState::pruned;
                        });
   }
