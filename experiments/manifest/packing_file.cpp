@@ -659,11 +659,12 @@ class PackingReader {
         "in\\s{1,9}(?!(?:real|metal|micro|nano|electron|si|lj|cgs|aa?)\\b))"
         "(real|metal|micro|nano|electron|si|lj|cgs|m|d|(?:[ckmunp]|\xC2\xB5|\xCE\xBC)m|fractional|"
         "scaled|reduced(?!\\s{1,9}unit)|(?:milli|centi|micro|nano|kilo)?met(?:er|re)s?|microns?|"
-        "aa?|ang|a\\.u\\.|au|inch(?:es)?|f(?:ee)?t|mils?|pixels?|voxels?|"
+        "a\\.u\\.|aa?|ang|au|inch(?:es)?|f(?:ee)?t|mils?|pixels?|voxels?|"
         "[0-9.]{1,20}(?:e|\\^)[-+]?[0-9]{1,4}\\s{0,9}[cmunp]?m)(?!\\w)"
         "(?!\\s*=|\\s{1,9}dimension|[-/^:])|"
         // No packing of this program is in one of these units, wherever a text names them.
-        "(?:^|[^*/\\w])((?:a|\xC3[\x85\xA5])ng?str(?:o|\xC3\xB6)ms?|\xC3\x85|"
+        "(?:^|[^*/\\w]|\\b(?:[xyz]|lengths?|pos\\w{0,9}|coord\\w{0,9})/"
+        ")((?:a|\xC3[\x85\xA5])ng?str(?:o|\xC3\xB6)ms?|\xC3\x85|"
         "\xE2\x84\xAB|bohrs?|atomic units?)(?![\\w^*\xC2\xE2-])|"
         "\\b(?:fractional|scaled|reduced)\\s{1,9}coord|"
         "\\b(?:(?:lattice|length|box|position)_?)?scale(?:_?factor)?=[0-9.]+(?![\\w.])",

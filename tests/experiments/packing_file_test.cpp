@@ -625,6 +625,7 @@ TEST(PackingFile, UnitsInProseAreReadRefusedOrNamed) {
                           {"velocities in Å/ps", "Å"},
                           {"Positions in Bohr", "Bohr"},
                           {"units: a.u.", "a.u."},
+                          {"x/Å y/Å z/Å", "Å"},
                           {"atomic units", "atomic units"},
                           {"lengths in inches", "inches"},
                           {"coordinates in microns", "microns"},
