@@ -363,7 +363,8 @@ TEST(OwnPlot, OfTheOnsetOfEachRunWithAClaim) {
                   "1 of 9 runs end before the onset; the means use their censored values"));
   // An expression is averaged like the measure: a hundred times as much.
   const auto hundredfold =
-      plot_figure({.name = "own", .y = "100*onset_size_phi", .x = "drag_kg_per_s"}).make(runs);
+      plot_figure({.name = "own", .columns = {{"100*onset_size_phi"}}, .x = "drag_kg_per_s"})
+          .make(runs);
   for (std::size_t k = 0; k < 2; ++k) {
     const TableRow &of_phi = drawn.tables.at(0).rows.at(k),
                    &of_expression = hundredfold.tables.at(0).rows.at(k);
