@@ -483,7 +483,7 @@ TEST(Export, HasOnlyKeysOfAManifest) {
 
 TEST(Export, ReportsWhatItCannotWrite) {
   const ExportedState frame = frame_of(checkpoints().front());
-  EXPECT_THROW(extxyz_writer("/nowhere/run.xyz", LengthUnit::m), std::runtime_error);
+  EXPECT_THROW(extxyz_writer("/nowhere/run.xyz", LengthUnit::m)(frame), std::runtime_error);
   EXPECT_THROW(h5md_writer("/nowhere/run.h5", 1), std::runtime_error);
   EXPECT_THROW(vtk_writer("/nowhere", 1)(frame), std::runtime_error);
   EXPECT_THROW(lammps_writer("/nowhere")(frame), std::runtime_error);
