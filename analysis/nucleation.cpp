@@ -183,10 +183,10 @@ std::vector<DensityBin> density(std::span<const std::vector<double>> groups, std
   for (std::size_t k = 0; k < bins; ++k) {
     std::vector<std::vector<double>> densities;  // of each place: `bins` in this bin, 0 elsewhere
     for (const std::vector<double>& places : groups) {
-      std::vector<double>& of_group = densities.emplace_back();
+      densities.emplace_back();
       for (const double p : places) {
         const auto bin = static_cast<std::size_t>(std::clamp(p * count, 0.0, count - 1));
-        of_group.push_back(bin == k ? count : 0);
+        densities.back().push_back(bin == k ? count : 0);
       }
     }
     const RunStatistic density_of = mean_of_items(std::move(densities));

@@ -98,9 +98,9 @@ Verdict share_verdict(const Claim& claim, std::string quantity, RunGroup runs, C
   const Places nuclei = places_of(runs, axis, Seen::first);
   std::vector<std::vector<double>> sides;  // of each packing
   for (const std::vector<double>& places : nuclei.packings) {
-    std::vector<double>& of_packing = sides.emplace_back();
+    sides.emplace_back();
     for (const double place : places) {
-      if (const auto counted = side(place)) of_packing.push_back(*counted);
+      if (const auto counted = side(place)) sides.back().push_back(*counted);
     }
   }
   Table entered = entered_with({"place", "value"});
