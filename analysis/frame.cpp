@@ -235,29 +235,38 @@ std::string words_of(const nlohmann::json& values) {
   return text;
 }
 
+namespace {
+
+/// The value of a measure of the run or of a parameter.
+RunValue value_of(const FrameRun& run, const std::string& name) {
+  const Measure* measure = find_measure(name, MeasureKind::run);
+  return measure != nullptr ? measure->of_run(run) : measured(number_of(run, name));
+}
+
+}  // namespace
+
 NumberColumn::NumberColumn(std::string text) : text_(std::move(text)) {
-  if (is_expression(text_)) evaluate_ = evaluator_of(text_);
+  if (!is_expression(text_)) return;
+  names_ = names_in(text_);
+  evaluate_ = evaluator_of(text_);
 }
 
 double NumberColumn::operator()(const FrameRun& run, const CheckpointMeasures* checkpoint) const {
   if (checkpoint == nullptr) return of_run(run).or_nan();
   const auto number = [&](const std::string& name) {
     if (find_measure(name) != nullptr) return checkpoint->measures.number(name);
-    return name == "cycle" ? checkpoint->cycle : NumberColumn(name)(run);
+    return name == "cycle" ? checkpoint->cycle : value_of(run, name).or_nan();
   };
   return evaluate_ ? evaluate_(number) : number(text_);
 }
 
 RunValue NumberColumn::of_run(const FrameRun& run) const {
-  if (!evaluate_) {
-    const Measure* measure = find_measure(text_, MeasureKind::run);
-    return measure != nullptr ? measure->of_run(run) : measured(number_of(run, text_));
-  }
+  if (!evaluate_) return value_of(run, text_);
   std::map<std::string, double> numbers;
   double* bound = nullptr;  // of the censored measure
   std::size_t censored = 0;
-  for (const std::string& name : names_in(text_)) {
-    const RunValue value = NumberColumn(name).of_run(run);
+  for (const std::string& name : names_) {
+    const RunValue value = value_of(run, name);
     const bool ends_before = value.missing == Missing::too_short;
     if (value.missing != Missing::nothing && !ends_before) return {0, value.missing};
     double& number = numbers[name] = ends_before ? value.above : value.value;

@@ -108,7 +108,8 @@ class NumberColumn {
 
  private:
   std::string text_;
-  Evaluate evaluate_;  // empty if text_ is a single name
+  std::vector<std::string> names_;  // in the expression
+  Evaluate evaluate_;               // empty if text_ is a single name
 };
 
 /// Whether a column has one number per run: it uses neither the cycle nor a checkpoint's measure.

@@ -189,7 +189,7 @@ std::vector<DensityBin> density(std::span<const std::vector<double>> groups, std
         densities.back().push_back(bin == k ? count : 0);
       }
     }
-    const RunStatistic density_of = mean_of_items(std::move(densities));
+    const RunStatistic density_of = mean_of_items(densities);
     const double width = 1 / count, low = static_cast<double>(k) * width;
     result.push_back(
         {low, low + width, density_of(every), bootstrap_error(groups.size(), density_of)});

@@ -185,7 +185,8 @@ struct Panel {
   std::vector<Curve> curves = {};
 };
 
-/// Computes the samples of a run. `cycle` (from cycle_of()) is used if the plot draws one cycle.
+/// Computes the samples of a run. `columns` are those of the plot. `cycle` (from cycle_of()) is
+/// used if the plot draws one cycle.
 void evaluate(const PlotSpec& plot, std::span<const NumberColumn> columns, const NumberColumn& x,
               double cycle, Trace& trace) {
   const auto at = std::ranges::find(trace.checkpoints, cycle, &CheckpointMeasures::cycle);
@@ -199,9 +200,10 @@ void evaluate(const PlotSpec& plot, std::span<const NumberColumn> columns, const
       sample.y.push_back(is_y ? value_of(column, trace, checkpoint) : column(*trace.run, row));
     }
   };
-  for (const ColumnSpec& column : plot.columns) {
-    const bool of_run = is_of_run(column.measure) && is_measured_of_run(column.measure);
-    trace.of_run.push_back(of_run ? NumberColumn(column.measure).of_run(*trace.run) : RunValue{});
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    const std::string& measure = plot.columns[k].measure;
+    const bool of_run = is_of_run(measure) && is_measured_of_run(measure);
+    trace.of_run.push_back(of_run ? columns[k].of_run(*trace.run) : RunValue{});
     if (!trace.partners.empty()) trace.of_run.back().above = std::nan("");
   }
   switch (against(plot)) {

@@ -125,14 +125,21 @@ double least_squares_slope(std::span<const std::pair<double, double>> points) {
   return xy / xx;
 }
 
-RunStatistic mean_of_items(std::vector<std::vector<double>> groups) {
-  return [groups = std::move(groups)](std::span<const std::size_t> selection) {
-    double sum = 0, all = 0;
+RunStatistic mean_of_items(std::span<const std::vector<double>> groups) {
+  std::vector<double> sums;
+  std::vector<std::size_t> sizes;
+  for (const std::vector<double>& items : groups) {
+    sums.push_back(std::accumulate(items.begin(), items.end(), 0.0));
+    sizes.push_back(items.size());
+  }
+  return [sums, sizes](std::span<const std::size_t> selection) {
+    double sum = 0;
+    std::size_t all = 0;
     for (const std::size_t group : selection) {
-      for (const double item : groups[group]) sum += item;
-      all += static_cast<double>(groups[group].size());
+      sum += sums[group];
+      all += sizes[group];
     }
-    return sum / all;
+    return sum / static_cast<double>(all);
   };
 }
 

@@ -33,7 +33,7 @@ double least_squares_slope(std::span<const std::pair<double, double>> points);
 /// of the bootstrap are counter-based, so the same input gives the same samples.
 using RunStatistic = std::function<double(std::span<const std::size_t>)>;
 /// The mean of all items of the selected groups. A group has the items of one packing.
-RunStatistic mean_of_items(std::vector<std::vector<double>> groups);
+RunStatistic mean_of_items(std::span<const std::vector<double>> groups);
 
 /// Standard error of a statistic: its standard deviation over the bootstrap samples, multiplied by
 /// sqrt(runs / (runs - 1)). For a mean it agrees with over_runs(). Empty for fewer than two runs,

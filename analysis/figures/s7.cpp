@@ -25,13 +25,18 @@ constexpr std::size_t density_bins = 8;
 constexpr double inaccessible = 4;
 
 struct Places {
-  /// Positions of the nuclei: one list for each packing with nuclei.
+  /// The numbers of the nuclei: one list for each packing with nuclei.
   std::vector<std::vector<double>> packings;
   std::size_t runs = 0;   ///< number of runs with nuclei
   std::size_t count = 0;  ///< number of nuclei in all packings
 };
 
-Places places_of(RunGroup runs, CellAxis axis, Seen seen = Seen::always) {
+/// `number` gives the number of a nucleus, or nothing to leave it out of Places::packings. Default:
+/// its place.
+Places places_of(
+    RunGroup runs, CellAxis axis, Seen seen = Seen::always,
+    const std::function<std::optional<double>(const FrameRun&, double place)>& number =
+        [](const FrameRun&, double place) { return place; }) {
   Places places;
   std::map<std::string, std::vector<double>> packings;
   for (const FrameRun* run : runs) {
@@ -40,7 +45,9 @@ Places places_of(RunGroup runs, CellAxis axis, Seen seen = Seen::always) {
     places.count += found.size();
     ++places.runs;
     std::vector<double>& all = packings[packing_of(*run)];
-    all.insert(all.end(), found.begin(), found.end());
+    for (const double place : found) {
+      if (const auto one = number(*run, place)) all.push_back(*one);
+    }
   }
   for (auto& [packing, all] : packings) places.packings.push_back(std::move(all));
   return places;
@@ -95,20 +102,13 @@ Table density_table(std::string name, std::string first_column, Text x,
 /// which it returns nothing is left out. The bootstrap resamples packings, each with all its runs.
 Verdict share_verdict(const Claim& claim, std::string quantity, RunGroup runs, CellAxis axis,
                       const std::function<std::optional<int>(double place)>& side) {
-  const Places nuclei = places_of(runs, axis, Seen::first);
-  std::vector<std::vector<double>> sides;  // of each packing
-  for (const std::vector<double>& places : nuclei.packings) {
-    sides.emplace_back();
-    for (const double place : places) {
-      if (const auto counted = side(place)) sides.back().push_back(*counted);
-    }
-  }
   Table entered = entered_with({"place", "value"});
-  for (const FrameRun* run : runs) {
-    for (const double place : nucleus_places(*run, axis, Seen::first)) {
-      if (const auto counted = side(place)) enter(*run, {place, std::int64_t{*counted}}, entered);
-    }
-  }
+  const Places nuclei = places_of(runs, axis, Seen::first, [&](const FrameRun& run, double place) {
+    const std::optional<int> counted = side(place);
+    if (counted) enter(run, {place, std::int64_t{*counted}}, entered);
+    return counted;
+  });
+  const std::vector<std::vector<double>>& sides = nuclei.packings;
   std::string note = fmt::format("{} nuclei of {} to {} grains in {} of {} runs", nuclei.count,
                                  nucleus_smallest, nucleus_largest, nuclei.runs, runs.size());
   if (sides.size() < nuclei.runs) {

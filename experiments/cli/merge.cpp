@@ -24,11 +24,11 @@ void merge(const std::vector<std::string>& sources, Context& context) {
     if (finding.severity == Finding::Severity::error) {
       not_copied.damage.insert(what);
     } else {
-      not_copied.cache_trouble = what;
+      print_stderr("measures cannot be cached: {}\n", what);
+      fail(context, kOtherError);
     }
   }
   print_problems(not_copied, "measures not copied", context);
-  if (!not_copied.cache_trouble.empty()) fail(context, kOtherError);
   for (const MergeReport& report : reports) {
     if (report.absent == 0) continue;
     warn(context,

@@ -32,8 +32,8 @@ struct Identity {
   /// True if the parameter selects the parent stage. Records then hold the id of the parent stage
   /// instead of the parameter.
   bool selects_parent = false;
-  bool settles =
-      false;  ///< `settle` may give another value, for the time while the packing settles
+  /// True if `settle` may give another value, for the time while the packing settles.
+  bool settles = false;
 
   /// Whether runs with different values of the parameter have different ids.
   bool distinguishes_runs() const { return stage && recorded_as.empty(); }
