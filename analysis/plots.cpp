@@ -193,11 +193,11 @@ void evaluate(const PlotSpec& plot, std::span<const NumberColumn> columns, const
   const CheckpointMeasures* chosen = at == trace.checkpoints.end() ? nullptr : *at;
   const auto add = [&](double cycle_of_row, double x_value, const CheckpointMeasures* checkpoint) {
     Sample& sample = trace.samples.emplace_back(Sample{cycle_of_row, x_value});
-    for (const NumberColumn& column : columns) {
-      const bool is_y = &column == columns.data();
+    for (std::size_t k = 0; k < columns.size(); ++k) {
       const CheckpointMeasures* row = checkpoint;
-      if (!is_y && row == nullptr && !trace.checkpoints.empty()) row = trace.checkpoints.front();
-      sample.y.push_back(is_y ? value_of(column, trace, checkpoint) : column(*trace.run, row));
+      if (k > 0 && row == nullptr && !trace.checkpoints.empty()) row = trace.checkpoints.front();
+      sample.y.push_back(k < plot.drawn ? value_of(columns[k], trace, row)
+                                        : columns[k](*trace.run, row));
     }
   };
   for (std::size_t k = 0; k < columns.size(); ++k) {
@@ -426,8 +426,10 @@ MeasureColumn column_for(const std::string& text, const std::string& name = {}) 
 std::vector<MeasureColumn> columns_of(const PlotSpec& plot) {
   std::vector<MeasureColumn> columns;
   for (const auto& [measure, name] : plot.columns) columns.push_back(column_for(measure, name));
-  if (!plot.minus.empty()) columns[0].name += "_difference";
-  columns[0].rms = plot.show == Show::rms;
+  for (MeasureColumn& column : std::span(columns).first(plot.drawn)) {
+    if (!plot.minus.empty()) column.name += "_difference";
+    column.rms = plot.show == Show::rms;
+  }
   return columns;
 }
 
@@ -599,34 +601,66 @@ void leave_out_symbol(const Curve& curve, Series& series) {
   series.join = curve.look.join;
 }
 
-/// A thin line or a cloud of points for each run. If x has one value per run, the runs of one seed
-/// share a line or cloud. Only the first line or cloud of a curve has a title.
+/// Sets title and style of the series for column k of a curve. `alone`: the panel has one curve.
+void name_y(const PlotSpec& plot, std::size_t k, bool alone, Series& series) {
+  const auto& [measure, name] = plot.columns[k];
+  // In a panel with one curve, the columns differ in colour and symbol. In a panel with several
+  // curves, the columns of one curve differ only in symbol.
+  if (alone) {
+    series.colour = safe_colours[k % safe_colours.size()];
+    series.point = curve_symbol(k);
+  } else if (series.point > 0 && k % 2 == 1) {
+    series.point ^= 1;  // open instead of filled, or filled instead of open
+  }
+  const Axis axis = axis_of(measure);
+  Text label = !axis.symbol.empty() ? axis.symbol
+               : name.empty()       ? axis.name
+                                    : formula(boost::replace_all_copy(name, "_", " "));
+  const auto stated = std::ranges::find(plot.series, name, &SeriesSpec::column);
+  if (stated != plot.series.end() && !name.empty()) {
+    if (!stated->label.empty()) label = formula(stated->label);
+    if (alone) set_look(*stated, series.colour, series.point);
+  }
+  series.title = alone ? label : series.title + Text(", ") + label;
+}
+
+/// A thin line or a cloud of points for each run, for column k of y. If x has one value per run,
+/// the runs of one seed share a line or cloud. Only the first line or cloud of a curve has a title.
+void add_runs(const Panel& panel, const Curve& curve, std::size_t k, std::vector<Series>& all) {
+  const PlotSpec& plot = panel.plot;
+  const bool of_run = against(plot) == Against::number_of_run, alone = panel.curves.size() == 1;
+  std::map<std::uint64_t, std::vector<ChartPoint>> lines;
+  for (std::uint64_t i = 0; i < curve.traces.size(); ++i) {
+    const Trace& trace = curve.traces[i];
+    std::vector<ChartPoint>& points = lines[of_run ? trace.run->place.seed : i];
+    for (const Sample& sample : trace.samples) {
+      const double y = sample.y[k];
+      if (std::isfinite(sample.x) && std::isfinite(y)) points.push_back({sample.x, y});
+    }
+  }
+  if (!draws_every_cycle(plot)) {
+    std::erase_if(lines, [](const auto& line) { return line.second.empty(); });
+  }
+  Series series = series_of(curve);
+  series.thin = true;
+  if (plot.drawn > 1) name_y(plot, k, alone, series);
+  if (plot.show == Show::scatter) {
+    series.join = Join::none;
+  } else if (!of_run && (plot.drawn == 1 || alone)) {
+    leave_out_symbol(curve, series);
+  }
+  for (auto& [i, points] : lines) {
+    if (of_run) std::ranges::sort(points, {}, &ChartPoint::x);
+    all.push_back(series);
+    all.back().points = std::move(points);
+    series.title = {};
+  }
+}
+
 std::vector<Series> series_of_runs(const Panel& panel) {
-  const bool of_run = against(panel.plot) == Against::number_of_run;
   std::vector<Series> all;
   for (const Curve& curve : panel.curves) {
-    std::map<std::uint64_t, std::vector<ChartPoint>> lines;
-    for (std::uint64_t k = 0; k < curve.traces.size(); ++k) {
-      const Trace& trace = curve.traces[k];
-      std::vector<ChartPoint>& points = lines[of_run ? trace.run->place.seed : k];
-      for (const Sample& sample : trace.samples) {
-        const double y = sample.y.front();
-        if (std::isfinite(sample.x) && std::isfinite(y)) points.push_back({sample.x, y});
-      }
-    }
-    if (!draws_every_cycle(panel.plot)) {
-      std::erase_if(lines, [](const auto& line) { return line.second.empty(); });
-    }
-    Text title = curve.title;
-    for (auto& [k, points] : lines) {
-      if (of_run) std::ranges::sort(points, {}, &ChartPoint::x);
-      Series& series = all.emplace_back(series_of(curve));
-      series.title = std::exchange(title, Text());
-      series.thin = true;
-      if (panel.plot.show == Show::scatter) series.join = Join::none;
-      if (!of_run && panel.plot.show != Show::scatter) leave_out_symbol(curve, series);
-      series.points = std::move(points);
-    }
+    for (std::size_t k = 0; k < panel.plot.drawn; ++k) add_runs(panel, curve, k, all);
   }
   return all;
 }
@@ -648,9 +682,9 @@ std::vector<ChartPoint> mean_points(Against what, std::span<const Bin> bins, std
 }
 
 /// If runs end at different cycles, the mean over the remaining runs would jump. The mean therefore
-/// ends where the shortest run ends, and the longer runs continue as thin lines. Returns whether
-/// the runs end at different cycles.
-bool follow_runs(const Curve& curve, double last_cycle, bool rms, Series& mean,
+/// ends where the shortest run ends, and the longer runs continue as thin lines. `mean` is of
+/// column k of y. Returns whether the runs end at different cycles.
+bool follow_runs(const Curve& curve, double last_cycle, std::size_t k, bool rms, Series& mean,
                  std::vector<Series>& single) {
   double first_end = infinite;
   for (const Trace& trace : curve.traces) {
@@ -661,7 +695,7 @@ bool follow_runs(const Curve& curve, double last_cycle, bool rms, Series& mean,
   for (const Trace& trace : curve.traces) {
     Series line{.colour = mean.colour, .point = 0, .join = Join::line, .thin = true};
     for (const Sample& sample : trace.samples) {
-      const double value = rms ? std::abs(sample.y.front()) : sample.y.front();
+      const double value = rms ? std::abs(sample.y[k]) : sample.y[k];
       if (sample.cycle >= first_end && std::isfinite(value)) {
         line.points.push_back({sample.cycle, value});
       }
@@ -730,13 +764,20 @@ Table table_of_runs(const Panel& panel) {
   const bool x = plot.x != "cycle";
   if (x) table.columns.emplace_back("cycle");
   table.columns.emplace_back(plot.x);
-  table.columns.emplace_back(plot.y() + (plot.minus.empty() ? "" : "_difference"));
+  for (const auto& [measure, name] : std::span(plot.columns).first(plot.drawn)) {
+    const std::string unit = column_for(measure).unit;
+    const std::string column = plot.drawn == 1 || name.empty() ? measure
+                               : unit.empty()                  ? name
+                                                               : name + "_" + unit;
+    table.columns.push_back(column + (plot.minus.empty() ? "" : "_difference"));
+  }
   for (const Curve& curve : panel.curves) {
     for (const Trace& trace : curve.traces) {
       for (const Sample& sample : trace.samples) {
         TableRow& row = table.rows.emplace_back(TableRow{curve.variant, trace.run->place.seed});
         if (x) row.emplace_back(sample.cycle);
-        row.insert(row.end(), {sample.x, sample.y.front()});
+        row.emplace_back(sample.x);
+        row.insert(row.end(), sample.y.begin(), sample.y.end());
       }
     }
   }
@@ -778,29 +819,6 @@ void require_different_titles(std::span<const Curve> curves) {
         "two curves of a figure have the label '" + plain_text(curve.title) +
         "'; give the curves different labels, in `series` of the plot or in `labels`");
   }
-}
-
-/// Sets title and style of the series for column k of a curve. `alone`: the panel has one curve.
-void name_y(const PlotSpec& plot, std::size_t k, bool alone, Series& series) {
-  const auto& [measure, name] = plot.columns[k];
-  // In a panel with one curve, the columns differ in colour and symbol. In a panel with several
-  // curves, the columns of one curve differ only in symbol.
-  if (alone) {
-    series.colour = safe_colours[k % safe_colours.size()];
-    series.point = curve_symbol(k);
-  } else if (series.point > 0 && k % 2 == 1) {
-    series.point ^= 1;  // open instead of filled, or filled instead of open
-  }
-  const Axis axis = axis_of(measure);
-  Text label = !axis.symbol.empty() ? axis.symbol
-               : name.empty()       ? axis.name
-                                    : formula(boost::replace_all_copy(name, "_", " "));
-  const auto stated = std::ranges::find(plot.series, name, &SeriesSpec::column);
-  if (stated != plot.series.end() && !name.empty()) {
-    if (!stated->label.empty()) label = formula(stated->label);
-    if (alone) set_look(*stated, series.colour, series.point);
-  }
-  series.title = alone ? label : series.title + Text(", ") + label;
 }
 
 void add_mark(const Panel& panel, Table& table) {
@@ -848,13 +866,12 @@ Table draw(const Panel& panel) {
     for (std::size_t k = 0; k < plot.drawn; ++k) {
       Series& drawn = table.chart.series.emplace_back(series);
       drawn.points = mean_points(what, bins, k);
-      if (k == 0 && what == Against::cycle && !bins.empty() &&
-          follow_runs(curve, bins.back().at, columns[0].rms, drawn, single)) {
+      if (plot.drawn > 1) name_y(plot, k, panel.curves.size() == 1, drawn);
+      if (what == Against::cycle && !bins.empty() &&
+          follow_runs(curve, bins.back().at, k, columns[k].rms, drawn, single)) {
         table.chart.note = "Thin lines: single runs, after the shortest run of the curve has ended";
       }
-      if (plot.drawn == 1) continue;
-      name_y(plot, k, panel.curves.size() == 1, drawn);
-      if (what == Against::number_of_run && !bins.empty()) {
+      if (plot.drawn > 1 && what == Against::number_of_run && !bins.empty()) {
         drawn.shift = static_cast<double>(k) * (bins.back().at - bins.front().at) / 60;
       }
     }

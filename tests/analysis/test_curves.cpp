@@ -288,6 +288,60 @@ TEST(OwnPlot, DrawsAMeasureAgainstCycleMeasureOrParameter) {
   EXPECT_EQ(plot_figure(by_fluid).make(two_variants()).tables.at(0).chart.series.size(), 2U);
 }
 
+TEST(OwnPlot, DrawsEachOfSeveralColumnsLikeTheFirst) {
+  const auto table = [](const std::vector<FrameRun>& runs, Show show,
+                        const nlohmann::json& minus = nlohmann::json::object()) {
+    const PlotSpec plot{.name = "own",
+                        .columns = {{"phi"}, {"100*phi", "hundredfold"}},
+                        .drawn = 2,
+                        .minus = minus,
+                        .show = show};
+    return plot_figure(plot).make(runs).tables.at(0);
+  };
+  const auto is_hundredfold = [](const Series& of_phi, const Series& other) {
+    const std::vector<ChartPoint> a = points_of(of_phi), b = points_of(other);
+    return a.size() > 1 && std::ranges::equal(a, b, [](const ChartPoint& p, const ChartPoint& q) {
+             return p.x == q.x && std::abs(q.y - 100 * p.y) < 1e-7;
+           });
+  };
+  std::vector<FrameRun> runs = {rising_run("still", 1, 6, 0), rising_run("still", 2, 6, 0.01)};
+  runs[1].checkpoints.resize(5);  // up to cycle 4
+
+  for (const Show show : {Show::traces, Show::scatter}) {
+    const Table each = table(runs, show);
+    EXPECT_TRUE(to_csv(each).starts_with("variant,seed,cycle,phi,hundredfold\n")) << to_csv(each);
+    EXPECT_NEAR(std::get<double>(each.rows.at(3).at(4)),
+                100 * std::get<double>(each.rows.at(3).at(3)), 1e-9);
+    const std::vector<Series>& drawn = each.chart.series;  // two runs, then the other column
+    ASSERT_EQ(drawn.size(), 4U);
+    EXPECT_TRUE(is_hundredfold(drawn[0], drawn[2]) && is_hundredfold(drawn[1], drawn[3]));
+    EXPECT_NE(drawn[0].colour, drawn[2].colour);
+    EXPECT_EQ(plain_text(drawn[2].title), "hundredfold");
+    EXPECT_TRUE(drawn[3].title.empty());
+  }
+  for (const Show show : {Show::mean, Show::rms}) {
+    const Table mean = table(runs, show);
+    const std::vector<Series>& drawn = mean.chart.series;  // two means, then the run that continues
+    ASSERT_EQ(drawn.size(), 4U);
+    EXPECT_TRUE(is_hundredfold(drawn[0], drawn[1])) << "both end with the shorter run";
+    EXPECT_TRUE(is_hundredfold(drawn[2], drawn[3])) << "both continue";
+    EXPECT_EQ(has(to_csv(mean), "hundredfold_rms"), show == Show::rms);
+  }
+
+  std::vector<FrameRun> pairs = {rising_run("still", 1, 6, 0), rising_run("cell", 1, 6, 0.01),
+                                 rising_run("still", 2, 6, 0), rising_run("cell", 2, 6, 0.03)};
+  for (FrameRun& run : pairs) run.packing = fmt::format("{}", run.place.seed);
+  const Table less = table(pairs, Show::mean, {{"fluid", "still"}});
+  EXPECT_TRUE(has(to_csv(less), "phi_difference_mean,")) << to_csv(less);
+  EXPECT_TRUE(has(to_csv(less), "hundredfold_difference_mean,")) << to_csv(less);
+  EXPECT_TRUE(is_hundredfold(less.chart.series.at(0), less.chart.series.at(1)));
+  EXPECT_NEAR(points_of(less.chart.series.at(1)).at(2).y, 2, 1e-7);
+
+  const Table several = table(two_parameters(), Show::traces);
+  EXPECT_EQ(several.chart.series.size(), 36U);
+  EXPECT_EQ(looks(several), 12U) << "the columns of a curve differ in symbol";
+}
+
 TEST(OwnPlot, NamesTheUnitOfAnAxisOnce) {
   const std::vector<FrameRun> runs = two_parameters();
   const auto x_axis = [&](const char* x, const char* unit) {
