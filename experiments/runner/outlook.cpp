@@ -300,11 +300,11 @@ namespace {
   throw StoreDamaged(why);
 }
 
-/// Analyses the next checkpoints at whole cycles: at most one per worker, beginning with `first`.
-/// Adds to `measures` the measures that the `until` conditions in `asks` use.
+/// Adds to `measures` the measures that the `until` conditions in `asks` use, of the checkpoints at
+/// whole cycles from `first` on: all that are cached if `cached`, else one per worker, analysed.
 void measure_from(const Store& store, const Stage& stage, std::span<const Ask> asks,
                   const CheckpointRecord& first, std::span<const CheckpointRecord> checkpoints,
-                  KnownMeasures& measures, const MeasureOptions& options) {
+                  bool cached, KnownMeasures& measures, const MeasureOptions& options) {
   std::set<std::string> wanted;
   std::vector<std::string> providers;
   for (const Ask& ask : asks) {
@@ -319,16 +319,16 @@ void measure_from(const Store& store, const Stage& stage, std::span<const Ask> a
     const auto is_known = [&](const std::string& name) { return known.numbers.contains(name); };
     if (std::ranges::all_of(wanted, is_known)) continue;
     chosen.push_back({one});
-    if (chosen.size() == options.workers) break;
+    if (!cached && chosen.size() == options.workers) break;
   }
   std::vector<ToMeasure> todo;
   for (CheckpointMeasures& one : chosen) todo.push_back({&one});
-  // The measures in `also` cost nothing extra in this analysis. Figures need them later.
-  const MeasureOptions also = {.workers = options.workers,
-                               .report = options.report,
-                               .also = {scalars_provider, "crystallites"}};
-  measure_checkpoints(store, todo, providers, also);
-  if (!chosen.front().lacking.empty()) refuse_unread(first);
+  MeasureOptions how = {
+      .workers = options.workers, .report = options.report, .only_cached = cached};
+  // These measures cost nothing extra in an analysis. Figures need them later.
+  if (!cached) how.also = {scalars_provider, "crystallites"};
+  measure_checkpoints(store, todo, providers, how);
+  if (!cached && !chosen.front().lacking.empty()) refuse_unread(first);
   for (CheckpointMeasures& one : chosen) {
     if (!one.lacking.empty()) continue;
     // A number that the checkpoint lacks is set to NaN, which never fulfils an `until`.
@@ -397,10 +397,11 @@ std::vector<PlannedStage> look_at(std::span<const Plan> plans, const Store* stor
 Outlook measured_outlook(const Store& store, const Stage& stage, std::span<const Ask> asks,
                          std::span<const CheckpointRecord> checkpoints, KnownMeasures& measures,
                          const MeasureOptions& options) {
-  for (;;) {
+  // A running stage asks after each checkpoint, which is not cached yet.
+  for (bool cached = measures.empty();; cached = false) {
     Outlook look = outlook(stage, asks, checkpoints, measures);
     if (!look.undecided) return look;
-    measure_from(store, stage, asks, *look.undecided, checkpoints, measures, options);
+    measure_from(store, stage, asks, *look.undecided, checkpoints, cached, measures, options);
   }
 }
 
