@@ -1165,6 +1165,11 @@ struct Reader {
     const bool any_curve = std::ranges::any_of(plot.columns, [](const ColumnSpec& one) {
       return find_measure(one.measure, MeasureKind::curve) != nullptr;
     });
+    const auto of_checkpoint = [](const ColumnSpec& one) { return !is_of_run(one.measure); };
+    reject_if(!plot.y().empty() && is_of_run(plot.y()) &&
+                  std::ranges::any_of(plot.columns | std::views::take(plot.drawn), of_checkpoint),
+              y, "combines a value of the whole run with a value of a checkpoint",
+              "Draw them in separate plots, or list the value of the whole run last.");
     reject_if(any_curve && plot.columns.size() > 1, also != nullptr ? also : y,
               "combines a curve with other columns", "Draw each curve in a plot of its own.");
     if (also != nullptr && plot.show != Show::mean) {
