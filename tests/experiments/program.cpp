@@ -17,7 +17,11 @@ namespace shearcell::test {
 
 namespace fs = std::filesystem;
 
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+static constexpr int kLimitSeconds = 1200;  // the sanitizers make a program up to 20 times slower
+#else
 static constexpr int kLimitSeconds = 120;
+#endif
 
 ProgramTest::Running ProgramTest::start(const Arguments& arguments, const std::string& name,
                                         const char* executable) {

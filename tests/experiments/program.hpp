@@ -79,7 +79,7 @@ class ProgramTest : public testing::Test {
   Running start_beside(const Arguments& arguments, const std::string& name);
   static Outcome wait_for(const Running& program);
 
-  /// Waits until this is on its standard error, two minutes at most.
+  /// Waits until this is on its standard error, at most as long as wait_for().
   static void wait_for_words(const Running& program, const std::string& words);
 
   /// Copies to `place` what `make` writes to an empty folder. `make` runs once per build; all test
