@@ -306,9 +306,8 @@ TEST_F(Prune, LastTooLeavesAStoreOfNumbers) {
   fs::remove_all(path("shearcell-store/objects"));  // as where only the databases are copied
   EXPECT_EQ(shown("shearcell-store"), shown_);
   expect(0, {"verify"}, {"0 checkpoints"});
-  for (const auto& run : json({"status", "--json"}).at("runs")) {
-    EXPECT_EQ(run.at("state"), "completed");
-  }
+  const nlohmann::json status = json({"status", "--json"});
+  for (const auto& run : status.at("runs")) EXPECT_EQ(run.at("state"), "completed");
   expect(0, {"merge", "shearcell-store", "--store", "united"});
   EXPECT_EQ(shown("united"), shown_);
   expect(0, {"resume"}, {"nothing is left to compute"});
@@ -317,7 +316,8 @@ TEST_F(Prune, LastTooLeavesAStoreOfNumbers) {
   // More cycles need the last states, which are recomputed.
   const std::string manifest = tiny_manifest(short_, kBothFluids + "seeds: 2\n" + plots_);
   write("m.yaml", manifest);
-  for (const auto& stage : json({"plan", "m.yaml", "--cycles", "6", "--json"}).at("stages")) {
+  const nlohmann::json plan = json({"plan", "m.yaml", "--cycles", "6", "--json"});
+  for (const auto& stage : plan.at("stages")) {
     if (stage.at("stage") != "shear") continue;
     EXPECT_EQ(stage.at("particle_steps_left"),
               stage.at("N").get<double>() * (5 + 1) *

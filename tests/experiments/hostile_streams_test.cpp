@@ -88,7 +88,8 @@ TEST_F(Streams, ACampaignContinuesWithoutItsTerminalAndReaders) {
   open_hung_up_terminal();
   EXPECT_EQ(shell("trap '' HUP; exec " + whole + "a --cycles 1 2>&9").code, 0);
   close(9);
-  const Outcome piped = shell("mkfifo p; sleep 0.3 <p & exec " + whole + "b --cycles 1 2>p");
+  const Outcome piped =
+      shell("mkfifo p; grep -qm1 started <p & exec " + whole + "b --cycles 1 2>p");
   EXPECT_EQ(piped.code, 0) << "signal " << piped.signal;
   EXPECT_EQ(hashes("a"), hashes());
   EXPECT_EQ(hashes("b"), hashes());
