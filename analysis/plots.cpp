@@ -185,19 +185,21 @@ struct Panel {
   std::vector<Curve> curves = {};
 };
 
-/// Computes the samples of a run. `columns` are those of the plot. `cycle` (from cycle_of()) is
-/// used if the plot draws one cycle.
+/// Computes the samples of a run. `columns`: PlotSpec::columns. `cycle`: cycle_of(), used if the
+/// plot draws one cycle.
 void evaluate(const PlotSpec& plot, std::span<const NumberColumn> columns, const NumberColumn& x,
               double cycle, Trace& trace) {
   const auto at = std::ranges::find(trace.checkpoints, cycle, &CheckpointMeasures::cycle);
   const CheckpointMeasures* chosen = at == trace.checkpoints.end() ? nullptr : *at;
   const auto add = [&](double cycle_of_row, double x_value, const CheckpointMeasures* checkpoint) {
     Sample& sample = trace.samples.emplace_back(Sample{cycle_of_row, x_value});
-    for (std::size_t k = 0; k < columns.size(); ++k) {
-      const CheckpointMeasures* row = checkpoint;
-      if (k > 0 && row == nullptr && !trace.checkpoints.empty()) row = trace.checkpoints.front();
-      sample.y.push_back(k < plot.drawn ? value_of(columns[k], trace, row)
-                                        : columns[k](*trace.run, row));
+    for (const NumberColumn& column : columns.first(plot.drawn)) {
+      sample.y.push_back(value_of(column, trace, checkpoint));
+    }
+    const CheckpointMeasures* row = checkpoint;
+    if (row == nullptr && !trace.checkpoints.empty()) row = trace.checkpoints.front();
+    for (const NumberColumn& column : columns.subspan(plot.drawn)) {
+      sample.y.push_back(column(*trace.run, row));
     }
   };
   for (std::size_t k = 0; k < columns.size(); ++k) {
@@ -601,8 +603,10 @@ void leave_out_symbol(const Curve& curve, Series& series) {
   series.join = curve.look.join;
 }
 
-/// Sets title and style of the series for column k of a curve. `alone`: the panel has one curve.
+/// If the plot draws several columns, sets title and style of the series for column k of a curve.
+/// `alone`: the panel has one curve.
 void name_y(const PlotSpec& plot, std::size_t k, bool alone, Series& series) {
+  if (plot.drawn == 1) return;
   const auto& [measure, name] = plot.columns[k];
   // In a panel with one curve, the columns differ in colour and symbol. In a panel with several
   // curves, the columns of one curve differ only in symbol.
@@ -643,7 +647,7 @@ void add_runs(const Panel& panel, const Curve& curve, std::size_t k, std::vector
   }
   Series series = series_of(curve);
   series.thin = true;
-  if (plot.drawn > 1) name_y(plot, k, alone, series);
+  name_y(plot, k, alone, series);
   if (plot.show == Show::scatter) {
     series.join = Join::none;
   } else if (!of_run && (plot.drawn == 1 || alone)) {
@@ -866,12 +870,12 @@ Table draw(const Panel& panel) {
     for (std::size_t k = 0; k < plot.drawn; ++k) {
       Series& drawn = table.chart.series.emplace_back(series);
       drawn.points = mean_points(what, bins, k);
-      if (plot.drawn > 1) name_y(plot, k, panel.curves.size() == 1, drawn);
+      name_y(plot, k, panel.curves.size() == 1, drawn);
       if (what == Against::cycle && !bins.empty() &&
           follow_runs(curve, bins.back().at, k, columns[k].rms, drawn, single)) {
         table.chart.note = "Thin lines: single runs, after the shortest run of the curve has ended";
       }
-      if (plot.drawn > 1 && what == Against::number_of_run && !bins.empty()) {
+      if (what == Against::number_of_run && !bins.empty()) {
         drawn.shift = static_cast<double>(k) * (bins.back().at - bins.front().at) / 60;
       }
     }

@@ -58,8 +58,8 @@ struct PlotSpec {
   /// The columns of the CSV. The first column is y: a measure of a checkpoint (a number or a
   /// curve), a measure of the whole run, or an expression of parameters and measures. An expression
   /// cannot contain a curve. It cannot contain measures of a checkpoint together with measures of
-  /// the run. If x and y have one value for each run, the other columns are evaluated at the first
-  /// checkpoint of the run.
+  /// the run. If x and y have one value for each run, columns that are not drawn are evaluated at
+  /// the first checkpoint of the run.
   std::vector<ColumnSpec> columns;
   std::size_t drawn = 1;  ///< number of columns that get a curve
   /// Selects runs by has_parameters(). The key "cycle" selects checkpoints.

@@ -1149,8 +1149,9 @@ struct Reader {
     reject_value_if(is_curve, x, not_with_curve,
                     fmt::format("Leave it out. The x axis of {} is {}.", plot.y(),
                                 is_curve ? curve->x : string_view()));
-    reject_if(!plot.y().empty() && is_of_run(plot.y()) && !of_run, &in,
-              plot.y() + " has one value for each run", "Use a parameter as x.");
+    const bool y_of_run = !plot.y().empty() && is_of_run(plot.y());
+    reject_if(y_of_run && !of_run, &in, plot.y() + " has one value for each run",
+              "Use a parameter as x.");
     reject_if(is_curve, in.find("minus"), not_with_curve,
               "As y, use a measure that is a number: curves cannot be subtracted.");
     reject_value_if(plot.show == Show::rms && !is_curve && plot.x != "cycle" && !of_run,
@@ -1166,10 +1167,10 @@ struct Reader {
       return find_measure(one.measure, MeasureKind::curve) != nullptr;
     });
     const auto of_checkpoint = [](const ColumnSpec& one) { return !is_of_run(one.measure); };
-    reject_if(!plot.y().empty() && is_of_run(plot.y()) &&
-                  std::ranges::any_of(plot.columns | std::views::take(plot.drawn), of_checkpoint),
-              y, "combines a value of the whole run with a value of a checkpoint",
-              "Draw them in separate plots, or list the value of the whole run last.");
+    reject_if(
+        y_of_run && std::ranges::any_of(plot.columns | std::views::take(plot.drawn), of_checkpoint),
+        y, "combines a value of the whole run with a value of a checkpoint",
+        "Draw them in separate plots, or list the value of the whole run last.");
     reject_if(any_curve && plot.columns.size() > 1, also != nullptr ? also : y,
               "combines a curve with other columns", "Draw each curve in a plot of its own.");
     if (also != nullptr && plot.show != Show::mean) {
