@@ -335,7 +335,9 @@ TEST_F(UnusualStore, HasTenThousandRuns) {
   std::printf("plan of 10,000 stages beside 10,001 known ones: %.2f s\n", seconds);
   EXPECT_EQ(plan.at("stages").size(), 10'000U);
   EXPECT_EQ(plan.at("stages").back().at("state"), "to do");
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
   EXPECT_LT(seconds, 30) << "it took minutes when each pair was compared as JSON";
+#endif
 }
 
 }  // namespace
