@@ -5,10 +5,13 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <vector>
 
 #include "provenance/errors.hpp"
 
@@ -36,6 +39,13 @@ std::string value_text(const nlohmann::json& value);
 /// The value for messages: a string without quotes, a floating-point number with six significant
 /// digits, any other value as JSON.
 std::string short_text(const nlohmann::json& value);
+
+/// `facts(item)` of each item, in order: a JSON array, if `facts` returns JSON.
+auto list_of(const auto& items, const auto& facts) {
+  std::vector<std::decay_t<decltype(facts(*std::begin(items)))>> list;
+  for (const auto& item : items) list.push_back(facts(item));
+  return list;
+}
 
 /// The member `key`; null when `object` has no such member or is not an object.
 nlohmann::json member_of(const nlohmann::json& object, const char* key);

@@ -21,6 +21,7 @@
 #include "experiments/runner/measure.hpp"
 #include "experiments/runner/terminal.hpp"
 #include "provenance/io/read_number.hpp"
+#include "provenance/json_text.hpp"
 #include "provenance/store.hpp"
 
 namespace shearcell::cli {
@@ -164,12 +165,6 @@ void add_engine_option(CLI::App& command, ExpandOptions& options);
 std::filesystem::path existing_folder(const std::string& store);
 
 void print_json(const nlohmann::json& facts);
-
-auto list_of(const auto& items, const auto& facts) {
-  std::vector<std::decay_t<decltype(facts(*std::begin(items)))>> list;
-  for (const auto& item : items) list.push_back(facts(item));
-  return list;
-}
 
 /// One value of a result. JSON output has it under `key`. A value with a heading is also printed
 /// as a table cell or a line of text.

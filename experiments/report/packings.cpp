@@ -195,9 +195,7 @@ json describe(const GrainField& field) {
 }
 
 json profile_json(const std::vector<double>& values, double unit = 1) {
-  json list = json::array();
-  for (const double value : values) list.push_back(rounded(value * unit, 6));
-  return list;
+  return list_of(values, [&](double value) { return rounded(value * unit, 6); });
 }
 
 json profiles_json(const Measures& measures) {
@@ -223,8 +221,6 @@ json make_frame(const CheckpointRecord& record, const MeasureSources& sources,
   const std::vector<GrainField> fields =
       make_fields(measures, analysis.grains, sources.facts(record.run));
   const EncodedFrame encoded = encode_frame(checkpoint, pose, fields);
-  json described = json::array();
-  for (const GrainField& field : fields) described.push_back(describe(field));
   return {{"name", frame_name(record)},
           {"cycle", record.cycle},
           {"sha256", record.sha256},
@@ -236,7 +232,7 @@ json make_frame(const CheckpointRecord& record, const MeasureSources& sources,
             {"bottom", pose.bottom},
             {"top", pose.top},
             {"tan_theta", pose.tan_theta}}},
-          {"fields", std::move(described)},
+          {"fields", list_of(fields, describe)},
           {"profiles", profiles_json(measures)},
           {"origin", std::vector(encoded.origin.begin(), encoded.origin.end())},
           {"step", std::vector(encoded.step.begin(), encoded.step.end())},

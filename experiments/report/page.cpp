@@ -10,6 +10,7 @@
 #include <iterator>
 #include <map>
 #include <optional>
+#include <ranges>
 #include <span>
 
 #include "analysis/error.hpp"
@@ -429,10 +430,9 @@ json experiment_json(const Content& content, const Experiment& experiment) {
 
 /// The experiments, then the figures that use more than one experiment.
 json parts_of(const Content& content) {
-  json parts = json::array();
-  for (const Experiment& experiment : content.experiments) {
-    parts.push_back(experiment_json(content, experiment));
-  }
+  json parts = list_of(content.experiments, [&](const Experiment& experiment) {
+    return experiment_json(content, experiment);
+  });
   if (!content.across.empty()) {
     parts.push_back({{"experiment", false},
                      {"question", "All experiments together"},
@@ -465,20 +465,13 @@ json traces_of(const RunTable& made) {
   return all;
 }
 
-json rows_json(const Table& table) {
-  json rows = json::array();
-  for (const TableRow& row : table.rows) {
-    json& cells = rows.emplace_back(json::array());
-    for (const TableCell& cell : row) cells.push_back(json_of(cell));
-  }
-  return rows;
-}
-
 json script_data(const Content& content) {
+  const auto cells_of = [](const TableRow& row) { return list_of(row, json_of); };
   json experiments = json::array();
   for (const Experiment& experiment : content.experiments) {
+    const Table& table = experiment.table.table;
     json columns = json::array();
-    for (const TableColumn& column : experiment.table.table.columns) {
+    for (const TableColumn& column : table.columns) {
       const Field* field = find_field(column.name);
       columns.push_back({{"key", column.name},
                          {"meaning", column.meaning},
@@ -486,7 +479,7 @@ json script_data(const Content& content) {
     }
     experiments.push_back({{"experiment", experiment.manifest.experiment},
                            {"columns", std::move(columns)},
-                           {"rows", rows_json(experiment.table.table)},
+                           {"rows", list_of(table.rows, cells_of)},
                            {"runs", traces_of(experiment.table)}});
   }
   return {{"charts", content.charts},
@@ -596,8 +589,7 @@ json page_of(const Content& content, const Head& head) {
   const std::string counts =
       fmt::format("{}, {}, {}", counted(content.experiments.size(), "experiment"),
                   counted(content.report.figures, "figure"), counted(content.runs.size(), "stage"));
-  json stages = json::array(), manifests = json::array();
-  for (const auto& [id, stage] : content.runs) stages.push_back(stage_json(stage));
+  json manifests = json::array();
   for (const auto& [sha256, manifest] : content.manifests) {
     manifests.push_back({{"sha256", sha256}, {"path", manifest.path}, {"text", manifest.text}});
   }
@@ -613,7 +605,7 @@ json page_of(const Content& content, const Head& head) {
       {"no_front_end", !has_front_end()},
       {"parts", parts_of(content)},
       {"packings", packings},
-      {"stages", stages},
+      {"stages", list_of(content.runs | std::views::values, stage_json)},
       {"manifests", manifests},
       {"style", std::string(shearcell_style, shearcell_style_end)}};
   if (content.report.interactive) {
@@ -642,13 +634,11 @@ Report make_report(const Store& store, const ReportOptions& options) {
     throw NotFound(store.folder().string() +
                    ": the store has no experiment; compute one with `shearcell run`");
   }
-  std::vector<std::string> names;
-  for (const Experiment& experiment : content.experiments) {
-    names.push_back(experiment.manifest.experiment);
-  }
   add_figures(content);
   add_runs(content);
   if (report.interactive) {
+    const auto names =
+        list_of(content.experiments, [](const Experiment& e) { return e.manifest.experiment; });
     content.packings = collect_packings(store, names, options.runs, options.packings,
                                         options.workers, options.encoded);
     const std::vector<std::string>& notes = content.packings.notes;
