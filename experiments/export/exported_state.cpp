@@ -8,7 +8,6 @@
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/schema.hpp"
-#include "provenance/json_text.hpp"
 
 namespace shearcell {
 namespace {
@@ -31,10 +30,9 @@ void add_columns(const Measures& measures, ExportedState& frame) {
 // The task that continues the stage in LAMMPS. A shear keeps its scene and drive. A packing keeps
 // the scene of settling, in which the walls are upright.
 std::optional<LammpsTask> continued(const Checkpoint& c, const Stage& stage) {
-  const auto kind = value_of<StageKind>(stage.kind);
-  if (!kind || kind == StageKind::stiffen || c.state.position.cols() == 0) return std::nullopt;
   try {
-    const Parameters p = read_stage(stage.resolved).parameters;
+    const auto [kind, parent, seed, p, file] = read_stage(stage.resolved);
+    if (kind == StageKind::stiffen || c.state.position.cols() == 0) return std::nullopt;
     const bool shears = kind == StageKind::shear;
     return LammpsTask{.cell = c.cell,
                       .scene = shears ? shear_scene(p) : settle_scene(p),
@@ -46,8 +44,8 @@ std::optional<LammpsTask> continued(const Checkpoint& c, const Stage& stage) {
   }
 }
 
-void add_facts(const CheckpointRecord& record, const Run& selected, const Measures& measures,
-               ExportedState& frame) {
+void add_facts(const CheckpointRecord& record, const Run& selected, const RunFacts& run,
+               const Measures& measures, ExportedState& frame) {
   frame.run = {{"run", selected.stage.id},
                {"experiment", selected.place.experiment},
                {"scale", scale_name(selected.place.scale)},
@@ -65,12 +63,8 @@ void add_facts(const CheckpointRecord& record, const Run& selected, const Measur
     if (find_field(key) == nullptr) continue;  // a forged store may have other keys
     if (value.is_number() || value.is_string()) frame.parameters.emplace_back(key, value);
   }
-  frame.stiffness_N_per_m =
-      measures.number("raised_stiffness_N_per_m");  // NaN unless the stage is of kind `stiffen`
-  const nlohmann::json stated = member_of(parameters, "stiffness_N_per_m");
-  if (std::isnan(frame.stiffness_N_per_m) && stated.is_number()) {
-    frame.stiffness_N_per_m = stated.get<double>();
-  }
+  const double raised = measures.number("raised_stiffness_N_per_m");  // NaN unless `stiffen`
+  frame.stiffness_N_per_m = std::isnan(raised) ? run.number("stiffness_N_per_m") : raised;
 }
 
 }  // namespace
@@ -91,7 +85,7 @@ ExportedState frame_of(const Checkpoint& checkpoint, const CheckpointRecord& rec
       particles_of(checkpoint.cell, pose_of(checkpoint), checkpoint.state,
                    std::isnan(rate) ? 0 : rate, checkpoint.units);
   frame.checkpoint = checkpoint;
-  add_facts(record, run, measures, frame);
+  add_facts(record, run, sources.facts(record.run), measures, frame);
   add_columns(measures, frame);
   frame.continued = continued(checkpoint, run.stage);
   return frame;
