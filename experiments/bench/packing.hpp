@@ -5,7 +5,8 @@
 #include <cstdint>
 
 #include "core/simulation.hpp"
-#include "experiments/manifest/parameters.hpp"
+#include "experiments/manifest/conversion.hpp"
+#include "protocols/settle.hpp"
 
 namespace shearcell::bench {
 
@@ -19,8 +20,16 @@ struct Packing {
 
 /// Makes loose grains and presses them together without gravity. The packing is dense but not at
 /// rest, and its step is 0. Packing::scene is shear_scene(parameters). Throws GeometryError.
-Packing pressed_packing(const Parameters& parameters, std::uint64_t seed);
+inline Packing pressed_packing(const Parameters& parameters, std::uint64_t seed) {
+  const Geometry shape = geometry(parameters);
+  const Cell cell = make_cell(shape, seed);
+  const State loose = fill_cell(cell, shape, seed);
+  return {parameters, cell, shear_scene(parameters),
+          pressed(cell, loose, settle_scene(parameters))};
+}
 
-Simulation simulate(const Packing& packing, const SimulationSettings& settings = {});
+inline Simulation simulate(const Packing& packing, const SimulationSettings& settings = {}) {
+  return {packing.cell, packing.scene, packing.state, settings};
+}
 
 }  // namespace shearcell::bench

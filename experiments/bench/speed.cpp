@@ -8,7 +8,6 @@
 
 #include "core/kernel.hpp"
 #include "experiments/bench/packing.hpp"
-#include "experiments/manifest/conversion.hpp"
 #include "provenance/checkpoint.hpp"
 #include "provenance/io/clock.hpp"
 #include "provenance/words.hpp"
