@@ -293,10 +293,9 @@ std::set<std::string> busy_runs(const Store& store, const std::vector<Submission
 }
 
 void write_task_report(const fs::path& folder, const std::vector<Stage>& runs) {
-  json list = json::array();
-  for (const Stage& stage : runs) {
-    list.push_back({{"id", stage.id}, {"state", name_of(stage.state)}, {"cycle", stage.cycle}});
-  }
+  const json list = list_of(runs, [](const Stage& stage) -> json {
+    return {{"id", stage.id}, {"state", name_of(stage.state)}, {"cycle", stage.cycle}};
+  });
   try {
     write_output(report_file(folder), json{{"runs", list}}.dump() + "\n");
   } catch (const std::system_error&) {
@@ -327,8 +326,7 @@ QueueView view_queue(const Store& store) {
   view.submissions = unfinished_submissions(store);
   std::vector<std::string> names;
   for (const Submission& open : view.submissions) {
-    names.push_back(open.name());
-    names.push_back(open.merge_name());
+    names.insert(names.end(), {open.name(), open.merge_name()});
   }
   try {
     for (const QueuedTask& task : ask_queue(names)) {

@@ -546,7 +546,6 @@ class PackingReader {
     return true;
   }
 
-  /// Reads a line of the header.
   void read_bounds(string_view line, const std::vector<string_view>& words) {
     const string_view low = words.size() == 4 && words[2].ends_with("lo") ? words[2] : "";
     const std::size_t axis = low.empty() ? low.npos : string_view("xyz").find(low.front());

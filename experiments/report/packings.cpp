@@ -59,9 +59,8 @@ struct ChosenRun : Run {
   std::size_t wall_grains = 0;
 };
 
-/// Returns the runs of PackingChoice::runs. If this list is empty, returns for each experiment the
-/// last run of each variant. If an experiment has more than PackingChoice::runs_per_experiment
-/// variants, uses only that many, evenly spaced in the list of variants.
+/// Returns the runs of `choice`. If an experiment has more variants than are shown, the shown ones
+/// are evenly spaced in the list of variants.
 std::vector<ChosenRun> choose(const Store& store, const std::vector<std::string>& experiments,
                               const RunSelection& selection, const PackingChoice& choice) {
   std::vector<ChosenRun> chosen;

@@ -61,7 +61,6 @@ struct Experiment {
   RunTable table = {};                ///< a row for each run, except runs that settle packings
 };
 
-/// The contents of the page, from the store.
 struct Content {
   const Store& store;
   const ReportOptions& options;
