@@ -354,7 +354,7 @@ json columns_of(const Experiment& experiment) {
     if (field == nullptr || field->name == "grains") continue;
     std::string name(field->symbol.empty() ? field->name : field->symbol);
     std::ranges::replace(name, '_', ' ');
-    const bool unit = !field->symbol.empty() && field->unit != "1" && !field->unit.empty();
+    const bool unit = !field->symbol.empty() && has_unit(*field);
     const std::string heading = unit ? fmt::format("{} [{}]", name, field->unit) : name;
     add(field->name, heading, !field->unit.empty());
   }
