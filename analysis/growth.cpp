@@ -254,4 +254,24 @@ Interval GrowthCurve::repeated_critical_size(std::size_t runs) const {
                      [&](Selection selection) { return rise(over(selection)); });
 }
 
+void add_size_columns(const std::string& name, std::vector<TableColumn>& columns) {
+  for (const char* ending : {"", "_low", "_high", "_standard_error"}) {
+    columns.push_back(name + ending + "_grains");
+  }
+}
+
+void add_size(const std::optional<Estimate>& size, TableRow& row) {
+  if (!size) {
+    row.resize(row.size() + 4);
+    return;
+  }
+  row.insert(row.end(),
+             {size->value, size->interval.low, size->interval.high, point_of(0, *size).y_error});
+}
+
+ChartPoint point_of(double x, const Estimate& size) {
+  return {
+      .x = x, .y = size.value, .y_error = size.spread / std::sqrt(static_cast<double>(size.runs))};
+}
+
 }  // namespace shearcell

@@ -109,4 +109,11 @@ class GrowthCurve {
   Sums over(std::span<const std::size_t> selection) const;
 };
 
+/// Adds columns for a size, the ends of its interval and its standard error, all in grains.
+void add_size_columns(const std::string& name, std::vector<TableColumn>& columns);
+/// Adds the values for the columns of add_size_columns(); empty cells if there is no estimate.
+void add_size(const std::optional<Estimate>& size, TableRow& row);
+/// The chart point that shows `size` at x. Its y_error is the standard error of the size.
+ChartPoint point_of(double x, const Estimate& size);
+
 }  // namespace shearcell

@@ -16,7 +16,6 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/axes.hpp"
 #include "analysis/claims.hpp"
 #include "analysis/error.hpp"
 #include "analysis/estimators.hpp"
@@ -546,17 +545,21 @@ Axis named_axis(std::string_view measure, std::string_view unit) {
   return {.name = std::move(name), .unit = boost::replace_all_copy(std::string(unit), "^2", "²")};
 }
 
-Axis axis_of(const std::string& key) {
+}  // namespace
+
+Axis axis_of(const std::string& column) {
   static const std::map<std::string, Axis> known = {
-      {"cycle", cycle_axis},
-      {"phi", phi_axis},
+      {"cycle", {.name = "shear cycle", .symbol = formula("$n$"), .whole = true}},
+      {"phi", {.name = "volume fraction", .symbol = formula("$ϕ$")}},
       {"crystalline_percent", {.name = "percentage crystalline", .unit = "%", .low = 0}},
       {"mean_overlap_d",
        {.name = "mean overlap", .symbol = formula("⟨$δ$⟩"), .unit = formula("$d$")}}};
-  if (const auto found = known.find(key); found != known.end()) return found->second;
-  if (const Measure* measure = find_plotted(key)) return named_axis(key, measure->unit);
-  return is_expression(key) ? Axis{.name = key} : named_axis(key, "1");
+  if (const auto found = known.find(column); found != known.end()) return found->second;
+  if (const Measure* measure = find_plotted(column)) return named_axis(column, measure->unit);
+  return is_expression(column) ? Axis{.name = column} : named_axis(column, "1");
 }
+
+namespace {
 
 /// "cycle" if all runs are sheared, "step" if all are stiffened, otherwise "cycle or step".
 std::string_view word_for_cycle(std::span<const Selected> runs) {

@@ -158,6 +158,9 @@ std::string variants_have(std::size_t variants, const nlohmann::json& where);
 /// of variants with the values of `minus`.
 std::string problem_of_minus(const PlotSpec& plot, std::size_t variants);
 
+/// The axis of "cycle", a measure, a parameter or an expression.
+Axis axis_of(const std::string& column);
+
 /// The figures of a manifest: first the figures with plots, then the figures with claims only, both
 /// in the order of the manifest. `question` is the title of a figure with several parts.
 std::vector<Figure> own_figures(std::span<const PlotSpec> plots, std::span<const ClaimSpec> claims,

@@ -60,6 +60,13 @@ struct AmplitudeRuns {
   Text title;  ///< "A = 0.05"
   Look look;
   const PublishedAmplitude* published;  ///< the nearest amplitude of the supplement
+
+  /// A line at the supplement's critical size.
+  ReferenceLine critical_line() const {
+    return {.at = published->critical_size,
+            .colour = look.colour,
+            .title = "the supplement's critical sizes"};
+  }
 };
 /// Groups the runs by amplitude, ascending.
 std::vector<AmplitudeRuns> by_amplitude(std::span<const FrameRun> runs);

@@ -10,7 +10,6 @@
 #include <set>
 #include <utility>
 
-#include "analysis/axes.hpp"
 #include "analysis/estimators.hpp"
 #include "analysis/growth.hpp"
 #include "analysis/plots.hpp"
@@ -124,8 +123,7 @@ Chart chart_of(std::span<const AmplitudeGrowth> all) {
     for (const GrowthRate& bin : growth_rates(one.published_bin().runs, least_counted)) {
       data.points.push_back({bin.size, bin.delta, std::nullopt, bin.delta_error});
     }
-    ReferenceLine& line =
-        chart.lines.emplace_back(critical_line(one.published->critical_size, one.look.colour));
+    ReferenceLine& line = chart.lines.emplace_back(one.critical_line());
     line.vertical = line.stub = true;
   }
   return chart;
@@ -171,9 +169,10 @@ Table critical_table(std::span<const AmplitudeGrowth> all) {
     simulated.points.push_back(point_of(one.amplitude, *critical));
     simulated.points.back().runs = static_cast<double>(counts.size());
   }
-  table.chart = {.x = amplitude_axis,
-                 .y = {.name = "critical size", .unit = "grains", .low = 0},
-                 .series = {std::move(published), std::move(simulated)}};
+  table.chart = {
+      .x = {.name = "amplitude", .symbol = formula("$A$"), .unit = "rad", .low = 0, .high = 0.12},
+      .y = {.name = "critical size", .unit = "grains", .low = 0},
+      .series = {std::move(published), std::move(simulated)}};
   return table;
 }
 
@@ -225,7 +224,7 @@ Table largest_table(const Frame& frame, std::span<const AmplitudeGrowth> all) {
   if (drawn.tables.empty()) return {.name = plot.name};
   Table table = std::move(drawn.tables.front());
   for (const AmplitudeGrowth& one : all) {
-    table.chart.lines.push_back(critical_line(one.published->critical_size, one.look.colour));
+    table.chart.lines.push_back(one.critical_line());
   }
   return table;
 }

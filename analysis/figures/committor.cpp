@@ -9,7 +9,6 @@
 #include <map>
 #include <utility>
 
-#include "analysis/axes.hpp"
 #include "analysis/committor.hpp"
 #include "analysis/estimators.hpp"
 #include "analysis/growth.hpp"
@@ -260,7 +259,7 @@ Table sizes_table(std::span<const Amplitude> all) {
       row.insert(row.end(), {one.controls.size(), background(one), one.published->critical_size});
     }
     table.chart.series.push_back(std::move(sizes));
-    table.chart.lines.push_back(critical_line(one.published->critical_size, one.look.colour));
+    table.chart.lines.push_back(one.critical_line());
   }
   return table;
 }

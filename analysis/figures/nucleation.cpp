@@ -9,9 +9,9 @@
 #include <set>
 #include <utility>
 
-#include "analysis/axes.hpp"
 #include "analysis/estimators.hpp"
 #include "analysis/nucleation.hpp"
+#include "analysis/plots.hpp"
 #include "analysis/statistics.hpp"
 #include "analysis/styles.hpp"
 
@@ -85,7 +85,7 @@ Table survival_table(const Groups& groups) {
     const auto longest = std::ranges::max_element(waits, {}, &Waiting::cycle);
     if (longest != waits.end()) add(longest->cycle, before);
   }
-  table.chart = {.x = cycle_axis,
+  table.chart = {.x = axis_of("cycle"),
                  .y = {.name = "share of runs without an onset", .low = 0, .high = 1},
                  .series = list_of(std::move(series))};
   return table;
@@ -114,7 +114,7 @@ Table rate_table(const Groups& groups, Region region, const std::string& name) {
           {.x = (bin.phi_low + bin.phi_high) / 2, .y = bin.rate, .y_error = error_of(bin)});
     }
   }
-  table.chart = {.x = phi_axis,
+  table.chart = {.x = axis_of("phi"),
                  .y = {.name = "onsets per grain and cycle", .log = true},
                  .series = list_of(std::move(series)),
                  .note = fmt::format("points in a bin of phi ({} wide) are shifted apart", phi_bin),
