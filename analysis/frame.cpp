@@ -109,14 +109,6 @@ std::vector<CensoredValue> over_packings(RunGroup runs, std::span<const Censored
   return values_of(means_by_packing(runs, values));
 }
 
-std::vector<double> over_packings(RunGroup runs, std::span<const double> values) {
-  std::vector<CensoredValue> observed;
-  for (const double value : values) observed.push_back({value});
-  std::vector<double> means;
-  for (const CensoredValue& mean : over_packings(runs, observed)) means.push_back(mean.value);
-  return means;
-}
-
 double number_of(const FrameRun& run, const std::string& key) {
   const nlohmann::json value = parameter_of(run, key);
   return value.is_number() ? value.get<double>() : std::nan("");

@@ -168,7 +168,6 @@ using PackingMeans = nlohmann::ordered_map<std::string, CensoredValue>;
 PackingMeans means_by_packing(RunGroup runs, std::span<const CensoredValue> values);
 std::vector<CensoredValue> values_of(const PackingMeans& means);
 std::vector<CensoredValue> over_packings(RunGroup runs, std::span<const CensoredValue> values);
-std::vector<double> over_packings(RunGroup runs, std::span<const double> values);
 /// The measure at the first checkpoint of each run, averaged over runs; NaN without checkpoints.
 double at_start(RunGroup runs, const std::string& measure);
 

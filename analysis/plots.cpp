@@ -434,10 +434,16 @@ std::vector<MeasureColumn> columns_of(const PlotSpec& plot) {
   return columns;
 }
 
-/// Mean over packings. Some of the values may be censored. RunStatistics::runs counts all packings,
-/// also those with censored values.
-RunStatistics mean_with_censored(RunGroup runs, std::span<const CensoredValue> values) {
+/// Mean or root mean square over packings. If some of the values are censored, always the mean.
+/// RunStatistics::runs counts all packings, also those with censored values.
+RunStatistics statistics_of(RunGroup runs, std::span<const CensoredValue> values,
+                            bool rms = false) {
   const std::vector<CensoredValue> means = over_packings(runs, values);
+  if (std::ranges::none_of(means, &CensoredValue::censored)) {
+    std::vector<double> known;
+    for (const CensoredValue& mean : means) known.push_back(mean.value);
+    return rms ? rms_over_runs(known) : over_runs(known);
+  }
   const std::optional<Estimate> estimate = censored_mean(means);
   if (!estimate || !std::isfinite(estimate->value)) return {};
   const auto n = static_cast<double>(means.size());
@@ -461,11 +467,13 @@ std::vector<Bin> average(const PlotSpec& plot, const Curve& curve,
   const bool by_cycle = what == Against::cycle || what == Against::measure;
   struct Members {
     std::vector<const FrameRun*> runs;
-    std::vector<std::vector<double>> values;            // for each run: x, then all y
-    std::vector<const std::vector<RunValue>*> of_runs;  // Trace::of_run of each run
+    std::vector<std::vector<CensoredValue>> values;  // for each run: x, then all y
     std::map<Missing, std::size_t> missing;
   };
   std::map<double, Members> bins;
+  const auto is_known = [](const CensoredValue& one) {
+    return !one.censored && std::isfinite(one.value);
+  };
   for (const Trace& trace : curve.traces) {
     std::map<double, std::vector<Sample>> own;
     for (const Sample& sample : trace.samples) {
@@ -486,48 +494,40 @@ std::vector<Bin> average(const PlotSpec& plot, const Curve& curve,
         throw AnalysisError(
             fmt::format("run {} has two checkpoints of cycle {}", trace.run->stage.id, at));
       }
-      std::vector<double> values;
-      const auto add_mean = [&](const auto& value) {
+      std::vector<CensoredValue> values;
+      const auto add_mean = [&](const auto& value, double above = std::nan("")) {
         std::vector<double> all;
         for (const Sample& sample : samples) all.push_back(value(sample));
-        values.push_back(all.size() == 1 ? all[0] : over_runs(all).mean.value_or(std::nan("")));
+        const double mean = over_runs(all).mean.value_or(std::nan(""));
+        values.push_back(std::isnan(above) ? CensoredValue{mean} : CensoredValue{above, true});
       };
       add_mean([](const Sample& sample) { return sample.x; });
       for (std::size_t k = 0; k < columns.size(); ++k) {
-        add_mean([k](const Sample& sample) { return sample.y[k]; });
+        add_mean([k](const Sample& sample) { return sample.y[k]; }, trace.of_run[k].above);
       }
-      const bool both = std::isfinite(values[0]) && std::isfinite(values[1]);
+      const bool both = is_known(values[0]) && is_known(values[1]);
       if (what == Against::phi && !both) continue;
       Members& bin = bins[at];
       // If x is a measure of checkpoints, only runs that have x and y are averaged.
       if (what == Against::measure && !both) continue;
       bin.runs.push_back(trace.run);
       bin.values.push_back(std::move(values));
-      bin.of_runs.push_back(&trace.of_run);
     }
   }
   std::vector<Bin> found;
   for (const auto& [at, members] : bins) {
     Bin& bin = found.emplace_back(Bin{at});
-    const auto over = [&](std::size_t k, const auto& statistics) {
-      std::vector<double> values;
-      for (const std::vector<double>& of_run : members.values) values.push_back(of_run[k]);
-      return statistics(over_packings(members.runs, values));
-    };
-    bin.x = over(0, over_runs);
-    for (std::size_t k = 0; k < columns.size(); ++k) {
+    const auto over = [&](std::size_t k, bool rms) {
       std::vector<CensoredValue> values;
-      for (std::size_t r = 0; r < members.runs.size(); ++r) {
-        const double above = (*members.of_runs[r])[k].above;
-        values.push_back(
-            {std::isnan(above) ? members.values[r][k + 1] : above, !std::isnan(above)});
-      }
-      const bool censored = std::ranges::count(values, true, &CensoredValue::censored) > 0;
-      bin.y.push_back(censored ? mean_with_censored(members.runs, values)
-                               : over(k + 1, columns[k].rms ? rms_over_runs : over_runs));
+      for (const auto& of_run : members.values) values.push_back(of_run[k]);
+      return statistics_of(members.runs, values, rms);
+    };
+    bin.x = over(0, false);
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      bin.y.push_back(over(k + 1, columns[k].rms));
     }
     bin.values = static_cast<std::size_t>(std::ranges::count_if(
-        members.values, [](const auto& of_run) { return std::isfinite(of_run[1]); }));
+        members.values, is_known, [](const auto& of_run) { return of_run[1]; }));
     bin.missing = members.missing;
   }
   return found;
@@ -835,9 +835,9 @@ void add_mark(const Panel& panel, Table& table) {
   for (const Curve& curve : panel.curves) {
     const std::vector<const FrameRun*> runs = runs_of(curve.traces);
     const auto over = [&](const NumberColumn& column) {
-      std::vector<double> values;
-      for (const FrameRun* run : runs) values.push_back(column(*run));
-      return over_runs(over_packings(runs, values));
+      std::vector<CensoredValue> values;
+      for (const FrameRun* run : runs) values.push_back({column(*run)});
+      return statistics_of(runs, values);
     };
     const RunStatistics at = over(x), value = over(y);
     if (!at.mean || !value.mean) continue;
