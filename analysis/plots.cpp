@@ -347,13 +347,6 @@ std::vector<StatedLook> stated_looks(const PlotSpec& plot, const Plots& others) 
   return looks;
 }
 
-/// Sets the title and the style given in the series entry.
-void apply(const SeriesSpec& stated, const PlotSpec& plot, bool named, Curve& curve) {
-  if (!stated.label.empty() && !(plot.listed && named)) curve.title = formula(stated.label);
-  if (!stated.colour.empty()) curve.look.join = Join::line;
-  set_look(stated, curve.look.colour, curve.look.point);
-}
-
 /// Sets Panel::curves, sorted by Curve::style, then by the values in Curve::key.
 void set_curves(const Looks& looks, const NameVariants& names, Panel& panel) {
   const PlotSpec& plot = panel.plot;
@@ -370,10 +363,13 @@ void set_curves(const Looks& looks, const NameVariants& names, Panel& panel) {
   for (Curve& curve : panel.curves) {
     for (Trace& trace : curve.traces) evaluate(plot, columns, x, panel.cycle, trace);
     curve.look = looks.of(runs_of(curve.traces), curve.key);
-    if (curve.style < plot.series.size()) {
-      apply(plot.series[curve.style], plot, curve.traces.front().run->named, curve);
-    }
     std::ranges::replace(curve.variant, ',', ';');  // some readers of CSV do not know quotes
+    if (curve.style == plot.series.size()) continue;
+    const SeriesSpec& stated = plot.series[curve.style];
+    const bool keeps_name = plot.listed && curve.traces.front().run->named;
+    if (!stated.label.empty() && !keeps_name) curve.title = formula(stated.label);
+    if (!stated.colour.empty()) curve.look.join = Join::line;
+    set_look(stated, curve.look.colour, curve.look.point);
   }
   std::ranges::stable_sort(panel.curves, {}, [](const Curve& curve) {
     return std::pair(curve.style, std::vector<json>(curve.key.begin(), curve.key.end()));
