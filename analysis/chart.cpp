@@ -175,12 +175,11 @@ std::string to_csv(const Table& table, Digits precision) {
   add_line(table.columns, [](const TableColumn& column) { return csv_field(column.name); });
   std::vector<int> significant(table.columns.size(), 0);
   for (std::size_t k = 0; precision == Digits::enough && k < significant.size(); ++k) {
-    double low = std::numeric_limits<double>::infinity(), high = -low;
+    DataRange range;
     for (const TableRow& row : table.rows) {
-      const std::optional<double> value = number_in(row.at(k));
-      low = std::min(low, value.value_or(low)), high = std::max(high, value.value_or(high));
+      if (const std::optional<double> value = number_in(row.at(k))) range.take(*value);
     }
-    significant[k] = digits_between(low, high);
+    significant[k] = digits_between(range.low, range.high);
   }
   for (const TableRow& row : table.rows) {
     add_line(row, [&, k = std::size_t{0}](const TableCell& value) mutable {

@@ -4,7 +4,9 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
@@ -160,6 +162,24 @@ std::string to_csv(const Table& table, Digits digits = Digits::enough);
 
 /// An array with one object for each row; the keys are in the order of the columns.
 nlohmann::ordered_json to_json(const Table& table);
+
+/// The smallest and the largest of some numbers. Without numbers, `low` is larger than `high`.
+struct DataRange {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -std::numeric_limits<double>::infinity();
+
+  void take(double value) {
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  /// A place on an axis, a share of the length of the range above `high` or, if `share` is
+  /// negative, below `low`. The length is measured on the logarithmic scale if `log`.
+  double beyond(double share, bool log) const {
+    const double end = share < 0 ? low : high;
+    const double room = share * (log ? std::log(high / low) : high - low);
+    return log ? end * std::exp(room) : end + room;
+  }
+};
 
 /// The points of one series that have finite x and y. If the error of y is infinite, only the error
 /// is left out. Series::shift is not added.

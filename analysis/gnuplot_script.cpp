@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -54,22 +53,18 @@ std::string literal(const Text& text) {
   return "'" + result + "'";
 }
 
-/// The range of the data along one axis, including error bars and reference lines.
-struct Extent {
-  double low = std::numeric_limits<double>::infinity();
-  double high = -std::numeric_limits<double>::infinity();
-
-  void take(double value, const std::optional<double>& error, bool positive = false) {
-    const double end = value - error.value_or(0);
-    low = std::min({low, value, positive && end <= 0 ? value : end});
-    high = std::max({high, value, value + error.value_or(0)});
-  }
-};
+/// Takes a value and both ends of its error bar. On a logarithmic axis, the lower end is left out
+/// unless it is positive.
+void take(double value, const std::optional<double>& error, bool log, DataRange& range) {
+  range.take(value);
+  range.take(value + error.value_or(0));
+  if (const double end = value - error.value_or(0); !log || end > 0) range.take(end);
+}
 
 /// Ticks of a logarithmic axis for data whose range contains at most one power of ten. If the
 /// highest value is less than four times the lowest, the ticks have equal steps. Otherwise they are
 /// 1, 2 and 5 times powers of ten.
-std::vector<std::string> ticks_of_decades(const Extent& data) {
+std::vector<std::string> ticks_of_decades(const DataRange& data) {
   std::vector<std::string> ticks;
   const bool narrow = data.high < 4 * data.low;
   const double power =
@@ -134,14 +129,14 @@ class Script {
       points_.push_back(drawn_points(chart_, series));
       for (ChartPoint& p : points_.back()) {
         p.x += series.shift;
-        x_.take(p.x, p.x_error, chart_.x.log);
-        y_.take(p.y, p.y_error, chart_.y.log);
+        take(p.x, p.x_error, chart_.x.log, x_);
+        take(p.y, p.y_error, chart_.y.log, y_);
       }
       longest_ = std::max(longest_, points_.back().size());
     }
     for (const ReferenceLine& line : chart_.lines) {
       if (line.vertical || !is_drawn(chart_, line)) continue;
-      y_.take(line.at, std::nullopt);
+      y_.take(line.at);
       lines_ = true;
     }
   }
@@ -187,7 +182,7 @@ class Script {
     text_ += fmt::format(format, std::forward<Values>(values)...);
   }
 
-  void ticks(const char* name, const Axis& axis, const Extent& data) {
+  void ticks(const char* name, const Axis& axis, const DataRange& data) {
     if (axis.log) add("set logscale {}\n", name);
     if (axis.log && std::floor(std::log10(data.high)) > std::ceil(std::log10(data.low))) {
       add("set format {0} '10^{{%T}}'\nset m{0}tics 10\n", name);
@@ -224,11 +219,10 @@ class Script {
   /// data, but ignores horizontal lines. If there are such lines, the script fixes both ends of y.
   void ranges() {
     const Axis &x = chart_.x, &y = chart_.y;
-    const auto outside = [&](double at, double share) {
-      const double room = share * (y.log ? std::log(y_.high / y_.low) : y_.high - y_.low);
-      return digits(y.log ? at * std::exp(room) : at + room, digits_between(y_.low, y_.high));
+    const auto outside = [&](double share) {
+      return digits(y_.beyond(share, y.log), digits_between(y_.low, y_.high));
     };
-    const std::string above = outside(y_.high, 0.05), below = outside(y_.low, -0.05);
+    const std::string above = outside(0.05), below = outside(-0.05);
     const bool stated = lines_ && above != below;
     const auto end = [](const std::optional<double>& fixed, bool holds, std::string otherwise) {
       return fixed && holds ? digits(*fixed) : otherwise;
@@ -338,8 +332,7 @@ class Script {
   const Chart& chart_;
   std::vector<std::vector<ChartPoint>> points_;  ///< of each series
   std::size_t longest_ = 0;                      ///< largest number of points of a series
-  Extent x_;
-  Extent y_;
+  DataRange x_, y_;     ///< of the drawn points with their error bars, and of horizontal lines
   bool lines_ = false;  ///< y_ includes horizontal lines
   std::string text_;
 };

@@ -949,31 +949,25 @@ void add_panel_column(const std::string& parameter, const json& value, Table& ta
 
 /// Gives all panels the same ranges, which include the data and published lines of all panels.
 void share_ranges(std::vector<Table>& tables) {
-  std::array<double, 2> low = {infinite, infinite}, high = {-infinite, -infinite};
+  DataRange x, y;
   for (const Table& table : tables) {
     for (const Series& series : table.chart.series) {
       for (const ChartPoint& p : drawn_points(table.chart, series)) {
         const double error = table.chart.y.log ? 0 : p.y_error.value_or(0);
-        low = {std::min(low[0], p.x), std::min(low[1], p.y - error)};
-        high = {std::max(high[0], p.x), std::max(high[1], p.y + error)};
+        x.take(p.x);
+        y.take(p.y - error);
+        y.take(p.y + error);
       }
     }
     for (const ReferenceLine& line : table.chart.lines) {
-      if (!is_drawn(table.chart, line)) continue;
-      low[1] = std::min(low[1], line.at);
-      high[1] = std::max(high[1], line.at);
+      if (is_drawn(table.chart, line)) y.take(line.at);
     }
   }
   for (Table& table : tables) {
-    Axis* const axes[] = {&table.chart.x, &table.chart.y};
-    for (std::size_t k = 0; k < 2; ++k) {
-      if (!(low[k] < high[k])) continue;
-      const double room = 0.04 * (axes[k]->log ? std::log(high[k] / low[k]) : high[k] - low[k]);
-      const auto beyond = [&](double end, double by) {
-        return axes[k]->log ? end * std::exp(by) : end + by;
-      };
-      axes[k]->low = std::min(axes[k]->low.value_or(high[k]), beyond(low[k], -room));
-      axes[k]->high = beyond(high[k], room);
+    for (const auto& [axis, data] : {std::pair(&table.chart.x, x), {&table.chart.y, y}}) {
+      if (!(data.low < data.high)) continue;
+      axis->low = std::min(axis->low.value_or(data.high), data.beyond(-0.04, axis->log));
+      axis->high = data.beyond(0.04, axis->log);
     }
   }
 }

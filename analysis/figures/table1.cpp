@@ -2,9 +2,7 @@
 // Table I and the parameters of the runs of every experiment. Supplement B.1.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <numbers>
 #include <string_view>
@@ -38,25 +36,19 @@ constexpr Parameter parameters[] = {
     {"gravity_m_per_s2", "$g$ [m/s²]", 9.81}};
 
 /// The values of one parameter in the runs of one experiment.
-struct Found {
-  double smallest = std::numeric_limits<double>::infinity();
-  double largest = -std::numeric_limits<double>::infinity();
+struct Found : DataRange {
   std::size_t runs = 0;  ///< runs that have the parameter
   bool varied = false;   ///< varied by a sweep or by stiffening
 
-  void take(double value) {
-    smallest = std::min(smallest, value);
-    largest = std::max(largest, value);
-  }
   static bool equal(double a, double b) {
     constexpr double rounding = 1e-12;
     return std::abs(a - b) <= rounding * std::abs(b);
   }
-  bool is_one_value() const { return equal(smallest, largest); }
+  bool is_one_value() const { return equal(low, high); }
   const char* beside(double published) const {
     if (runs == 0) return "none";
     if (varied && !is_one_value()) return "varied";
-    return equal(smallest, published) && equal(largest, published) ? "equal" : "differs";
+    return equal(low, published) && equal(high, published) ? "equal" : "differs";
   }
 };
 
@@ -93,8 +85,8 @@ Text number_text(double value) {
 
 Text range_text(const Found& found) {
   if (found.runs == 0) return "–";
-  const Text smallest = number_text(found.smallest);
-  return found.is_one_value() ? smallest : smallest + " – " + number_text(found.largest);
+  const Text smallest = number_text(found.low);
+  return found.is_one_value() ? smallest : smallest + " – " + number_text(found.high);
 }
 
 /// The first two rows of the drawn table: the headings, and the values of the supplement.
@@ -132,8 +124,8 @@ FigureResult figure_table1(const Frame& frame) {
     for (const Parameter& parameter : parameters) {
       const Found found = found_in(members, parameter);
       const std::string comparison = found.beside(parameter.published);
-      table.rows.push_back({experiment, parameter.name, parameter.published, found.smallest,
-                            found.largest, found.runs, comparison});
+      table.rows.push_back({experiment, parameter.name, parameter.published, found.low, found.high,
+                            found.runs, comparison});
       row.push_back({range_text(found), colour_of(comparison)});
     }
   }
