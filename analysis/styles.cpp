@@ -36,6 +36,10 @@ Rank rank_of(const json& variant, std::span<const json> variants,
   return {static_cast<std::size_t>(below), all.size()};
 }
 
+bool is_published(double amplitude_rad) {
+  return std::abs(published_nearest(amplitude_rad).amplitude_rad - amplitude_rad) < 1e-6;
+}
+
 /// Whether the variant agrees with `where` in all keys that both have.
 bool may_have(const json& variant, const json& where) {
   return std::ranges::all_of(where.items(), [&](const auto& stated) {
@@ -50,7 +54,7 @@ Look amplitude_look(double amplitude_rad, std::size_t k) {
   static_assert(colours.size() == published_amplitudes.size());
   const PublishedAmplitude& nearest = published_nearest(amplitude_rad);
   const auto place = static_cast<std::size_t>(&nearest - published_amplitudes.data());
-  const bool published = std::abs(nearest.amplitude_rad - amplitude_rad) < 1e-6;
+  const bool published = is_published(amplitude_rad);
   const std::size_t colour = published ? colours[place] : k;
   return {safe_colours[colour % safe_colours.size()], curve_symbol(published ? place : k)};
 }
@@ -127,17 +131,14 @@ Look Looks::of(RunGroup curve, const json& key) const {
     const json value = member_of(one, "amplitude_rad");
     return value.is_number() ? value.get<double>() : std::nan("");
   };
-  const auto is_published = [&](const json& one) {
-    const double amplitude = amplitude_of(one);
-    return std::abs(published_nearest(amplitude).amplitude_rad - amplitude) < 1e-6;
-  };
   // Whether the palette still contains the colour of the amplitude. The colours that the manifest
   // gives were removed from the palette above.
   const auto has_own_colour = [&](const json& one) {
     return std::ranges::count(palette, amplitude_look(amplitude_of(one), 0).colour) > 0;
   };
   if (!keys.empty() && keys.front() == "amplitude_rad" && has_own_colour(variant) &&
-      std::ranges::all_of(variants_, is_published) && std::ranges::all_of(free, has_own_colour)) {
+      std::ranges::all_of(variants_, is_published, amplitude_of) &&
+      std::ranges::all_of(free, has_own_colour)) {
     look.colour = amplitude_look(amplitude_of(variant), 0).colour;
   }
   if (!stated.colour.empty()) look.colour = stated.colour;

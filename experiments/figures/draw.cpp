@@ -200,8 +200,7 @@ ComputedFigure compute_figure(const Store& store, const WantedFigure& wanted,
     providers.insert(providers.begin(), scalars_provider);
   }
   made += measure_runs(store, runs, providers, measuring);
-  std::set<std::string_view> pending;
-  for (const FrameRun& planned : collected.pending) pending.insert(planned.stage.id);
+  const std::set<std::string_view> pending = stage_ids(pointers(collected.pending));
   for (const FrameRun& run : runs) {
     made.unmeasured += !pending.contains(run.stage.id) &&
                        std::ranges::any_of(run.checkpoints, [](const auto& one) {
