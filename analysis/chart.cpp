@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <boost/algorithm/string/replace.hpp>
 #include <cmath>
-#include <limits>
 
 #include "provenance/json_text.hpp"
 #include "provenance/words.hpp"
@@ -203,14 +202,13 @@ void name_run_counts(Table& table) {
   std::vector<Series*> means;
   std::vector<std::string> counts;  // for each mean: "3 to 5 of 6"; "" if no run is missing
   for (Series& series : table.chart.series) {
-    double fewest = std::numeric_limits<double>::infinity(), most = 0;
+    DataRange averaged;
     for (const ChartPoint& point : points_of(series)) {
-      if (!point.runs) continue;
-      fewest = std::min(fewest, *point.runs);
-      most = std::max(most, *point.runs);
+      if (point.runs) averaged.take(*point.runs);
     }
-    const auto all = std::max(static_cast<double>(series.runs), most);
-    if (most == 0) continue;
+    const auto [fewest, most] = averaged;
+    if (!(most > 0)) continue;
+    const double all = std::max(static_cast<double>(series.runs), most);
     means.push_back(&series);
     std::string& count = counts.emplace_back();
     if (fewest >= all) continue;

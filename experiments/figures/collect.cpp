@@ -311,8 +311,7 @@ WantedFigures wanted_figures(const Store& store, const std::vector<std::string>&
   const auto asked = [&](const std::string& name) { return among(names, name); };
   const bool named = !experiments.empty() && !names.empty();
   WantedFigures wanted;
-  std::vector<std::string_view> supplement;
-  for (const Figure& figure : all_figures()) supplement.emplace_back(figure.name);
+  const std::vector<std::string_view> supplement = names_of(all_figures());
   std::set<std::string> known(supplement.begin(), supplement.end()), reported;
   for (const RegisteredManifest& manifest : manifests) {
     if (!among(experiments, manifest.experiment)) continue;
@@ -411,7 +410,7 @@ CollectedRuns collect_runs(const Store& store, const WantedFigure& wanted,
       add_planned(manifest, !wanted.figure.of.empty(), collected);
     }
     if (!wanted.figure.of.empty()) join(wanted.figure.of, collected);
-    for (const FrameRun& run : collected.runs) collected.variants.push_back(run.place.swept);
+    collected.variants = swept_of(pointers(collected.runs));
     std::erase_if(collected.runs, [&](const FrameRun& run) {
       return wanted.figure.uses && !wanted.figure.uses(run);
     });
