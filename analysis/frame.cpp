@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <ranges>
 #include <set>
 #include <utility>
 
@@ -218,11 +219,8 @@ std::string words_of(const nlohmann::json& values) {
     if (min) text += (max ? " " : " >= ") + value_text(value["min"]);
     if (max) text += (min ? " to " : " <= ") + value_text(value["max"]);
     if (min || max) continue;
-    std::vector<std::string> any;
-    for (const nlohmann::json& one : value.is_array() ? value : nlohmann::json::array({value})) {
-      any.push_back(value_text(one));
-    }
-    text += fmt::format("={}", fmt::join(any, " or "));
+    const nlohmann::json any = value.is_array() ? value : nlohmann::json::array({value});
+    text += fmt::format("={}", fmt::join(any | std::views::transform(value_text), " or "));
   }
   return text;
 }
