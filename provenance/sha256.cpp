@@ -40,14 +40,6 @@ std::string Sha256::hex() {
   return fmt::format("{:02x}", fmt::join(digest, ""));
 }
 
-std::string sha256_hex(std::span<const std::byte> data) {
-  return Sha256().add(data).hex();
-}
-
-std::string sha256_hex(std::string_view text) {
-  return Sha256().add(text).hex();
-}
-
 bool is_sha256_hex(std::string_view text) {
   return text.size() == 64 && text.find_first_not_of("0123456789abcdef") == text.npos;
 }

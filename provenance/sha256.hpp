@@ -41,8 +41,10 @@ class Sha256 {
   std::unique_ptr<evp_md_ctx_st, void (*)(evp_md_ctx_st*)> context_;
 };
 
-std::string sha256_hex(std::span<const std::byte> data);
-std::string sha256_hex(std::string_view text);
+/// The SHA-256 of bytes or of a text.
+std::string sha256_hex(const auto& data) {
+  return Sha256().add(data).hex();
+}
 
 /// Whether the text is 64 lower-case hex digits.
 bool is_sha256_hex(std::string_view text);
