@@ -16,6 +16,8 @@
 #include <system_error>
 #include <utility>
 
+#include "provenance/io/clock.hpp"
+
 namespace shearcell {
 
 const char* const lease_table = R"sql(
@@ -119,11 +121,11 @@ std::vector<Lease> query_leases(const Database& database, std::string_view run) 
       .all(read_lease);
 }
 
-void put_lease(Database& database, const Lease& lease) {
-  const Holder& h = lease.holder;
-  Statement(database, "INSERT OR REPLACE INTO leases VALUES(?,?,?,?,?,?,?,?,?)", lease.run, h.host,
-            h.place, h.pid, h.started, h.token, lease.attempt, lease.renewed_at_ms,
-            lease.expires_at_ms)
+void put_lease(Database& database, std::string_view run, const Holder& h, std::uint64_t attempt,
+               std::uint64_t duration_ms) {
+  const std::uint64_t now = now_ms();
+  Statement(database, "INSERT OR REPLACE INTO leases VALUES(?,?,?,?,?,?,?,?,?)", run, h.host,
+            h.place, h.pid, h.started, h.token, attempt, now, now + duration_ms)
       .run();
 }
 

@@ -51,8 +51,9 @@ std::string describe(const Holder& holder);
 extern const char* const lease_table;
 /// The leases of one run, or of all runs (""), including those that have lapsed.
 std::vector<Lease> query_leases(const sqlite::Database& database, std::string_view run = "");
-/// Stores the lease and replaces any other lease of the run.
-void put_lease(sqlite::Database& database, const Lease& lease);
+/// Stores a lease that begins now and lasts `duration_ms`. Replaces any other lease of the run.
+void put_lease(sqlite::Database& database, std::string_view run, const Holder& holder,
+               std::uint64_t attempt, std::uint64_t duration_ms);
 /// Deletes the lease of the run if the lease has this token.
 void drop_lease(sqlite::Database& database, std::string_view run, std::string_view token);
 

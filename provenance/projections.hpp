@@ -55,9 +55,6 @@ std::map<std::string, TableRows> projection_rows(const sqlite::Database& databas
 
 // All queries throw StoreDamaged when a table holds a value that cannot come from an event.
 
-NotFound unknown_stage(std::string_view id);
-NotFound unknown_checkpoint(std::string_view run, std::string_view sha256);
-
 /// Whether `wanted` adds something to the stored stage `known`. It adds nothing if a membership of
 /// `known` has the place and the checkpoint interval of `wanted`, and a target at least as large as
 /// that of `wanted`. True if `known` is empty.

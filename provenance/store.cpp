@@ -99,6 +99,18 @@ std::string loss_of(const sqlite::Database& database, const std::string& token,
   return own ? "" : "another process continued it";
 }
 
+NotFound unknown_stage(std::string_view id) {
+  return NotFound(fmt::format("the store has no run '{}'; `shearcell status` lists its runs", id));
+}
+
+/// The checkpoint of the run. Throws NotFound if the run has no such checkpoint.
+CheckpointRecord known_checkpoint(const sqlite::Database& database, const std::string& run,
+                                  const std::string& sha256) {
+  auto found = query_checkpoint(database, run, sha256);
+  if (!found) throw NotFound(fmt::format("run {}: it has no checkpoint {}", run, sha256));
+  return std::move(*found);
+}
+
 /// Throws NotFound if there are two or more candidates. The message lists their ids.
 void require_one(const char* what, std::string_view prefix, const auto& candidates, auto id) {
   constexpr std::size_t most = 10;
@@ -170,15 +182,6 @@ Store::Snapshot::Snapshot(const Store& store)
 Store::Writing::Writing(Store& store)
     : scoped_lock(store.mutex_), WriteTransaction(store.must_write()) {}
 
-void Store::hold(const std::string& id, std::uint64_t attempt) {
-  const std::uint64_t now = now_ms();
-  put_lease(database_, {.run = id,
-                        .holder = self_,
-                        .attempt = attempt,
-                        .renewed_at_ms = now,
-                        .expires_at_ms = now + lease_ms_});
-}
-
 sqlite::Database& Store::must_write() const {
   if (access_ == Access::read) throw std::logic_error("this store was opened for reading only");
   return database_;
@@ -218,7 +221,7 @@ void Store::append_held(const std::string& id, const NewEvent& event, bool relea
   if (release) {
     drop_lease(database_, id, self_.token);
   } else {
-    hold(id, held->second);
+    put_lease(database_, id, self_, held->second, lease_ms_);
   }
   lock.commit();
   if (release) held_.erase(held);
@@ -318,17 +321,16 @@ std::uint64_t Store::start_stage(const std::string& id, const json& host,
   events::Any begun = std::move(started);
   std::uint64_t from_step = 0;
   if (from_sha256) {
-    const auto from = query_checkpoint(database_, id, *from_sha256);
-    if (!from) throw unknown_checkpoint(id, *from_sha256);
-    from_step = from->step;
-    begun = events::RunResumed{attempted, {from->sha256, from->step, from->cycle}};
+    const CheckpointRecord from = known_checkpoint(database_, id, *from_sha256);
+    from_step = from.step;
+    begun = events::RunResumed{attempted, {from.sha256, from.step, from.cycle}};
   }
   if (known->step > from_step && !fill) {
     throw ConcurrencyConflict(fmt::format(
         "run {}: another process has recorded step {}; continue from this step", id, known->step));
   }
   append(run_stream(id), encode(begun), lock);
-  hold(id, attempt);
+  put_lease(database_, id, self_, attempt, lease_ms_);
   held_[id] = attempt;  // before the commit, which may succeed and still throw
   lock.commit();
   return attempt;
@@ -341,7 +343,7 @@ void Store::renew_leases() {
   std::erase_if(held_, [this](const auto& run) {
     return !loss_of(database_, self_.token, run.first, run.second).empty();
   });
-  for (const auto& [id, attempt] : held_) hold(id, attempt);
+  for (const auto& [id, attempt] : held_) put_lease(database_, id, self_, attempt, lease_ms_);
   lock.commit();
 }
 
@@ -400,10 +402,9 @@ void Store::complete_stage(const std::string& id, const json& summary,
 void Store::reject_checkpoint(const std::string& id, const std::string& sha256,
                               const std::string& why) {
   Writing lock(*this);
-  const auto record = query_checkpoint(database_, id, sha256);
-  if (!record) throw unknown_checkpoint(id, sha256);
-  if (record->state != CheckpointState::recorded) return;
-  append(run_stream(id), encode(events::CheckpointRejected{sha256, record->step, why}), lock);
+  const CheckpointRecord record = known_checkpoint(database_, id, sha256);
+  if (record.state != CheckpointState::recorded) return;
+  append(run_stream(id), encode(events::CheckpointRejected{sha256, record.step, why}), lock);
   lock.commit();
 }
 
@@ -613,10 +614,9 @@ void Store::restore_checkpoint(const CheckpointRecord& record, const Checkpoint&
     objects_.put(bytes);
     Writing lock(*this);
     if (!objects_.contains(sha256)) continue;  // a concurrent `prune` deleted it
-    const auto now = query_checkpoint(database_, record.run, sha256);
-    if (!now) throw unknown_checkpoint(record.run, sha256);
-    if (now->state == CheckpointState::recorded) return;
-    append(run_stream(record.run), encode(events::CheckpointRegenerated{{*now}}), lock);
+    const CheckpointRecord now = known_checkpoint(database_, record.run, sha256);
+    if (now.state == CheckpointState::recorded) return;
+    append(run_stream(record.run), encode(events::CheckpointRegenerated{{now}}), lock);
     lock.commit();
     return;
   }

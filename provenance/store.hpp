@@ -232,7 +232,6 @@ class Store {
   void append(std::string_view stream, const NewEvent& event, const sqlite::WriteTransaction& lock);
   /// Appends an event that only the holder of the lease may write. `release` ends the lease.
   void append_held(const std::string& id, const NewEvent& event, bool release);
-  void hold(const std::string& id, std::uint64_t attempt);
   /// Returns the database. Throws std::logic_error if the store was opened with Access::read.
   sqlite::Database& must_write() const;
   /// A write transaction that also locks out other threads of this program.
