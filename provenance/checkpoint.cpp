@@ -2,7 +2,6 @@
 #include "provenance/checkpoint.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstring>
 #include <numeric>
@@ -26,9 +25,6 @@ using hdf5::put_dataset;
 using hdf5::refuse;
 using hdf5::require;
 using hdf5::Shape;
-
-static_assert(std::endian::native == std::endian::little,
-              "the machine must be little-endian, because checkpoint files are");
 
 /// Calls field(name, value) for each number in the group /restart, in the order of the file.
 /// cell_numbers() does the same for /restart/cell.
@@ -252,7 +248,7 @@ Checkpoint decode_checkpoint(std::span<const std::byte> image) {
   if (image.size() <= hdf5::kFrameSize || !text.starts_with(hdf5::kFrameTitle)) {
     refuse("file", "it is not a checkpoint of a known version");
   }
-  const Object top = Object::root(image.subspan(hdf5::kFrameSize), hdf5::kFrameSize);
+  const Object top = Object::root(image.subspan(hdf5::kFrameSize));
   Checkpoint checkpoint;
   read_restart(top.child("restart"), checkpoint);
   const Object observables = top.child("observables");

@@ -14,8 +14,6 @@ namespace shearcell::hdf5 {
 
 namespace {
 
-using Bytes = std::span<const std::byte>;
-
 static_assert(std::endian::native == std::endian::little,
               "the machine must be little-endian, because checkpoint files are");
 
@@ -108,12 +106,12 @@ void Object::fail(const std::string& why) const {
   refuse(path_.empty() ? "/" : path_, why);
 }
 
-Object::Bytes Object::at(std::uint64_t address, std::uint64_t size) const {
+Bytes Object::at(std::uint64_t address, std::uint64_t size) const {
   if (address > file_.size() || size > file_.size() - address) fail("points outside the file");
   return file_.subspan(static_cast<std::size_t>(address), static_cast<std::size_t>(size));
 }
 
-Object Object::root(Bytes file, std::size_t user_block) {
+Object Object::root(Bytes file) {
   constexpr std::size_t superblock_size = 96;
   if (file.size() < superblock_size) refuse("file", "it is truncated");
   Cursor cursor(file);
@@ -121,11 +119,11 @@ Object Object::root(Bytes file, std::size_t user_block) {
   if (text_in(cursor.take(8)) != "\x89HDF\r\n\x1a\n") refuse("file", "it is not HDF5");
   const bool known = cursor.number(5) == 0 && cursor.number(2) == 0x0808;
   cursor.take(9);
-  if (!known || cursor.number(8) != user_block) {
+  if (!known || cursor.number(8) != kFrameSize) {
     refuse("file", "its superblock is not one that this program writes");
   }
   cursor.take(8);
-  if (cursor.number(8) != user_block + file.size()) {
+  if (cursor.number(8) != kFrameSize + file.size()) {
     refuse("file", "its size differs from the size in its superblock");
   }
   cursor.take(16);
@@ -212,12 +210,6 @@ Object Object::child(const std::string& name) const {
   return {file_, found->second, below(name)};
 }
 
-std::vector<std::string> Object::names() const {
-  std::vector<std::string> found;
-  for (const auto& [name, address] : links_) found.push_back(name);
-  return found;
-}
-
 /// The attribute, which must be a single value.
 const Object::Attribute& Object::scalar(const std::string& name) const {
   const auto found = attributes_.find(name);
@@ -228,7 +220,7 @@ const Object::Attribute& Object::scalar(const std::string& name) const {
 }
 
 /// The eight bytes of a single number of this data type.
-Object::Bytes Object::word(const std::string& name, std::string_view type) const {
+Bytes Object::word(const std::string& name, std::string_view type) const {
   const Attribute& attribute = scalar(name);
   if (!is_type(attribute.type, type)) refuse(below(name), "has the wrong data type");
   if (attribute.data.size() < 8) refuse(below(name), "is truncated");
@@ -257,8 +249,8 @@ std::string Object::text(const std::string& name) const {
 }
 
 /// Checks the type, shape, size and address of a dataset and returns its data.
-Object::Bytes Object::values(const std::string& name, std::string_view type, std::uint64_t columns,
-                             std::size_t bytes_each) const {
+Bytes Object::values(const std::string& name, std::string_view type, std::uint64_t columns,
+                     std::size_t bytes_each) const {
   const Object dataset = child(name);
   if (!dataset.layout_) dataset.fail("is not stored contiguously in this file");
   if (!is_type(dataset.type_, type)) dataset.fail("has the wrong data type");

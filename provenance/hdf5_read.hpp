@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <ranges>
 #include <span>
 #include <string>
 #include <string_view>
@@ -36,17 +37,17 @@ inline std::string frame_text(const std::string& sha256) {
 /// Throws StoreDamaged with the message "checkpoint: WHERE: WHY".
 [[noreturn]] void refuse(const std::string& where, const std::string& why);
 
+using Bytes = std::span<const std::byte>;
+
 /// A group or a dataset. The bytes of the file must outlive the object. All functions throw
 /// StoreDamaged, which names the path within the file.
 class Object {
  public:
-  using Bytes = std::span<const std::byte>;
-
-  /// The root group. `hdf5_part` is the file without its first `user_block` bytes.
-  static Object root(Bytes hdf5_part, std::size_t user_block);
+  /// The root group. `hdf5_part` is a checkpoint file without its frame.
+  static Object root(Bytes hdf5_part);
 
   Object child(const std::string& name) const;
-  std::vector<std::string> names() const;  ///< names of the members of a group, sorted
+  auto names() const { return std::views::keys(links_); }  ///< of the members of a group, sorted
 
   // The value of a scalar attribute.
   double number(const std::string& name) const;        ///< a finite number
