@@ -10,7 +10,6 @@
 #include <cerrno>
 #include <cstdio>
 #include <map>
-#include <string>
 #include <system_error>
 
 #include "provenance/derived.hpp"
@@ -137,10 +136,6 @@ void require_writable(const std::filesystem::path& file) {
 
 constexpr const char* kSelect = "SELECT * FROM events ";
 
-std::string zeros() {
-  return std::string(64, '0');
-}
-
 Event read_event(const sqlite::Statement& row) {
   Event e;
   row.get(e.seq, e.stream, e.version, e.type, e.schema, e.recorded_at, e.payload, e.prev_hash,
@@ -218,8 +213,6 @@ std::string utc_text(std::int64_t ms) {
   return fmt::format("{:%FT%T}.{:03}Z", fmt::gmtime(std::time_t{(ms - within) / 1000}), within);
 }
 
-EventLog::EventLog(sqlite::Database& database) : database_(database) {}
-
 Event EventLog::append(const sqlite::WriteTransaction& lock, std::string_view stream,
                        const NewEvent& event) {
   Event complete;
@@ -252,12 +245,12 @@ std::uint64_t EventLog::version(std::string_view stream) const {
 
 Head EventLog::head() const {
   sqlite::Statement query(database_, "SELECT seq, hash FROM events ORDER BY seq DESC LIMIT 1");
-  if (!query.step()) return {.seq = 0, .hash = zeros()};
+  if (!query.step()) return {.seq = 0, .hash = std::string(64, '0')};
   return {.seq = query.u64(0), .hash = query.text(1)};
 }
 
 std::string EventLog::hash_at(std::uint64_t seq) const {
-  if (seq == 0) return zeros();
+  if (seq == 0) return std::string(64, '0');
   sqlite::Statement query(database_, "SELECT hash FROM events WHERE seq = ?", seq);
   return query.step() ? query.text(0) : "";
 }

@@ -80,7 +80,7 @@ std::string event_hash(const Event& event);
 /// Not thread-safe; the database must outlive the log.
 class EventLog {
  public:
-  explicit EventLog(sqlite::Database& database);
+  explicit EventLog(sqlite::Database& database) : database_(database) {}
 
   /// Appends an event to a stream, in the newest layout of its type. The parameter `lock` proves
   /// that the caller holds the write lock, so that no seq or version is assigned twice.

@@ -83,8 +83,7 @@ std::string value_text(const json& value) {
 }
 
 std::string short_text(const json& value) {
-  if (value.is_string()) return value.get<std::string>();
-  return value.is_number_float() ? fmt::format("{:.6g}", value.get<double>()) : value.dump();
+  return value.is_number_float() ? fmt::format("{:.6g}", value.get<double>()) : value_text(value);
 }
 
 json member_of(const json& object, const char* key) {

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <utility>
 
 #include "core/machine.hpp"
 #include "provenance/errors.hpp"
@@ -51,8 +50,6 @@ Descriptor open_object_folder(const std::filesystem::path& store, std::string_vi
 }
 
 }  // namespace
-
-ObjectStore::ObjectStore(std::filesystem::path store_folder) : folder_(std::move(store_folder)) {}
 
 std::string ObjectStore::file_of(std::string_view sha256) {
   return fmt::format("{}/{}/{}.h5", kFolder, sha256.substr(0, 2), sha256);

@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace shearcell {
@@ -19,7 +20,7 @@ namespace shearcell {
 class ObjectStore {
  public:
   /// The store folder must exist. The first call of put() creates the folder `objects` in it.
-  explicit ObjectStore(std::filesystem::path store_folder);
+  explicit ObjectStore(std::filesystem::path store_folder) : folder_(std::move(store_folder)) {}
 
   /// Writes the bytes to disk (with fsync) and returns their SHA-256. Keeps an existing object if
   /// it is valid, otherwise replaces it. Throws std::system_error if writing fails. Throws

@@ -65,10 +65,6 @@ std::string without_path(const std::string& subject, const std::string& message)
   return message.substr(at + subject.size() + 2);
 }
 
-std::string event_name(std::uint64_t seq) {
-  return fmt::format("event {}", seq);
-}
-
 /// Checks that the log contains the earlier head. If so, no event up to this head was changed.
 void check_extends(const EventLog& log, const Head& earlier, VerifyReport& report) {
   const std::string found = log.hash_at(earlier.seq);
@@ -80,7 +76,7 @@ void check_extends(const EventLog& log, const Head& earlier, VerifyReport& repor
                 "the log was rewritten, or the given head is wrong: this event has hash {}, "
                 "but the given head has hash {}",
                 found, earlier.hash);
-  add_error(report, event_name(earlier.seq),
+  add_error(report, fmt::format("event {}", earlier.seq),
             why + "; check the given head, or restore the log from a backup");
 }
 
@@ -91,7 +87,7 @@ sqlite::Database derive(const EventLog& log, const std::string& name, VerifyRepo
     ++report.events;
     const std::string why = try_apply(fresh, event);
     if (why.empty()) return;
-    add_error(report, event_name(event.seq), "it cannot be applied: " + why,
+    add_error(report, fmt::format("event {}", event.seq), "it cannot be applied: " + why,
               run_of(event).value_or(""));
   });
   return fresh;
@@ -215,7 +211,8 @@ VerifyReport Store::verify(const std::optional<Head>& against) const {
     }
     report.head = log_.head();
     if (const auto fault = log_.verify_chain()) {
-      add_error(report, event_name(fault->seq), fault->message + "; restore the log from a backup");
+      add_error(report, fmt::format("event {}", fault->seq),
+                fault->message + "; restore the log from a backup");
     }
     if (against) check_extends(log_, *against, report);
     const sqlite::Database fresh = derive(log_, database_.name(), report);

@@ -17,7 +17,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <sstream>
-#include <string_view>
 #include <thread>
 
 #include "provenance/io/clock.hpp"

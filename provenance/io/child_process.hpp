@@ -14,8 +14,7 @@
 namespace shearcell {
 
 /// Thrown when a program is missing, cannot be started or fails. what() says what to do.
-class ProgramError : public std::runtime_error {
- public:
+struct ProgramError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 

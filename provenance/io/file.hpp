@@ -54,8 +54,7 @@ void replace_file(const Descriptor& folder, const std::filesystem::path& path,
                   std::span<const std::byte> bytes, bool synced);
 
 /// Thrown when the output path names a file, folder or link that this program did not make.
-class NotOurs : public std::runtime_error {
- public:
+struct NotOurs : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
