@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <string_view>
 
 #include "provenance/events.hpp"
 #include "provenance/json_text.hpp"
@@ -368,12 +367,8 @@ std::string try_apply(Database& database, const Event& event) {
   try {
     apply(database, event);
     const events::Any decoded = events::decode(event);
-    const auto* text = std::visit(
-        [](const auto& e) -> const events::TextRegistered* {
-          if constexpr (requires { e.text; }) return &e;
-          return nullptr;
-        },
-        decoded);
+    const events::TextRegistered* text = std::get_if<events::ManifestRegistered>(&decoded);
+    if (text == nullptr) text = std::get_if<events::PackingRegistered>(&decoded);
     if (text != nullptr && (text->sha256 != sha256_hex(text->text) ||
                             event.stream.substr(event.stream.find('/') + 1) != text->sha256)) {
       return "the SHA-256 of the registered text differs from the recorded one";
@@ -463,14 +458,6 @@ bool holds_place(const Database& database, std::string_view run, const Place& pl
                  "kind <> 'prepare' ORDER BY m.ordinal DESC LIMIT 1",
                  place.seed, place.variant, place.manifest, place.scale, place.experiment);
   return !last.step() || last.text(0) == run;
-}
-
-NotFound unknown_stage(std::string_view id) {
-  return NotFound(fmt::format("the store has no run '{}'; `shearcell status` lists its runs", id));
-}
-
-NotFound unknown_checkpoint(std::string_view run, std::string_view sha256) {
-  return NotFound(fmt::format("run {}: it has no checkpoint {}", run, sha256));
 }
 
 std::vector<Stage> query_stages(const Database& database, std::string_view prefix) {

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <map>
 #include <utility>
-#include <vector>
 
 #include "provenance/errors.hpp"
 #include "provenance/io/file.hpp"

@@ -5,7 +5,6 @@
 #include <openssl/evp.h>
 
 #include <array>
-#include <bit>
 #include <stdexcept>
 
 namespace shearcell {

@@ -13,7 +13,6 @@
 #include <system_error>
 #include <utility>
 
-#include "provenance/errors.hpp"
 #include "provenance/io/file.hpp"
 #include "provenance/limits.hpp"
 
