@@ -204,7 +204,9 @@ std::filesystem::path existing_folder(const std::string& store) {
   return place;
 }
 
-void add_expand_options(CLI::App& command, ExpandOptions& options) {
+void add_manifest_options(CLI::App& command, std::vector<std::string>& manifests,
+                          ExpandOptions& options, bool engines) {
+  command.add_option("manifest", manifests, "YAML manifests")->required();
   command.add_option("--scale", options.scale, "Scale to use (default: desk)");
   add_number(command, "--cycles", options.cycles,
              "Number of cycles, instead of the number in the manifest. The store keeps the largest "
@@ -215,6 +217,12 @@ void add_expand_options(CLI::App& command, ExpandOptions& options) {
              "in the store",
              "N", 1);
   add_variant_and_seed(command, options.variants, options.only_seeds);
+  if (!engines) return;
+  command
+      .add_option("--engine", options.engine,
+                  "Program that simulates the shear (default: shearcell)")
+      ->check(one_of<EngineKind>())
+      ->type_name("NAME");
 }
 
 void add_selection_options(CLI::App& command, RunSelection& selection, bool states) {
@@ -274,16 +282,9 @@ std::vector<Plan> load_plans(const std::vector<std::string>& paths, const Expand
   return plans;
 }
 
-void add_threads_option(CLI::App& command, std::size_t& threads, const std::string& help) {
+void add_threads_option(CLI::App& command, std::size_t& threads, const std::string& what) {
+  const std::string help = what + "; more than one is useful for large cells";
   add_number(command, "--threads,-t", threads, help, "T", 1, 1024);
-}
-
-void add_engine_option(CLI::App& command, ExpandOptions& options) {
-  command
-      .add_option("--engine", options.engine,
-                  "Program that simulates the shear (default: shearcell)")
-      ->check(one_of<EngineKind>())
-      ->type_name("NAME");
 }
 
 void print_json(const nlohmann::json& facts) {

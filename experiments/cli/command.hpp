@@ -102,8 +102,10 @@ auto add_command(CLI::App& app, Context& context, const char* name, const char* 
 /// Adds --store DIR and --json. `footer` is the help text printed below the options.
 void add_common_options(CLI::App& command, Context& context, const std::string& footer);
 
-/// Adds --scale, --cycles, --seeds, --variant and --seed, which select the runs of a manifest.
-void add_expand_options(CLI::App& command, ExpandOptions& options);
+/// Adds the manifests, and --scale, --cycles, --seeds, --variant and --seed, which select their
+/// runs. If `engines` is true, also adds --engine.
+void add_manifest_options(CLI::App& command, std::vector<std::string>& manifests,
+                          ExpandOptions& options, bool engines);
 
 /// Reads and expands each manifest once. If the runs of manifest B start from runs of manifest A, A
 /// comes before B in the result. Passes all warnings to warn(). Also warns if a plan lacks runs
@@ -158,8 +160,7 @@ CLI::IsMember one_of() {
   return CLI::IsMember(std::vector<std::string>(kNames<Enum>.begin(), kNames<Enum>.end()));
 }
 
-void add_threads_option(CLI::App& command, std::size_t& threads, const std::string& help);
-void add_engine_option(CLI::App& command, ExpandOptions& options);
+void add_threads_option(CLI::App& command, std::size_t& threads, const std::string& what);
 
 /// Returns the folder of the store if it exists, else its nearest parent folder that exists.
 std::filesystem::path existing_folder(const std::string& store);

@@ -375,9 +375,7 @@ void add_plan(CLI::App& app, Context& context) {
   const auto [command, options] = add_command(
       app, context, "plan",
       "List the runs of manifests, show which are done, and estimate the cost of the others", plan);
-  command->add_option("manifest", options->manifests, "YAML manifests")->required();
-  add_expand_options(*command, options->expand);
-  add_engine_option(*command, options->expand);
+  add_manifest_options(*command, options->manifests, options->expand, true);
   add_common_options(*command, context,
                      "A run that several manifests share is counted once.\n"
                      "Examples:\n"

@@ -324,8 +324,7 @@ void add_regenerate(CLI::App& app, Context& context) {
                       "SHA-256 hashes of checkpoints, or beginnings of these hashes");
   add_selection_options(*command, options->selection, true);
   command->add_flag("--all", options->all, "Recompute all missing or damaged files of the store");
-  add_threads_option(*command, options->threads,
-                     "Number of threads; more than one is useful for large cells");
+  add_threads_option(*command, options->threads, "Number of threads");
   add_common_options(
       *command, context,
       R"(Recomputes each state from the nearest earlier checkpoint that has a file. If there is no such

@@ -220,8 +220,7 @@ void resume_runs(const RunOptions& options, Context& context) {
 void add_worker_options(CLI::App& command, RunOptions& options) {
   add_number(command, "--jobs,-j", options.jobs,
              "Number of runs computed at a time (default: one per core)", "J", 1, 1024);
-  add_threads_option(command, options.parallel.threads,
-                     "Threads inside each run; more than one is useful for large cells");
+  add_threads_option(command, options.parallel.threads, "Threads inside each run");
   add_number(command, "--mpi", options.parallel.ranks,
              "MPI processes of each LAMMPS run; this number affects the last digits of results",
              "N", 1, 65536);
@@ -238,9 +237,7 @@ void add_worker_options(CLI::App& command, RunOptions& options) {
 void add_run(CLI::App& app, Context& context) {
   const auto [command, options] =
       add_command(app, context, "run", "Compute the runs of manifests", run);
-  command->add_option("manifest", options->inputs, "YAML manifests")->required();
-  add_expand_options(*command, options->expand);
-  add_engine_option(*command, options->expand);
+  add_manifest_options(*command, options->inputs, options->expand, true);
   add_worker_options(*command, *options);
   add_common_options(*command, context, R"(Examples:
   shearcell run experiments/drag.yaml --scale smoke

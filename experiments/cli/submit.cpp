@@ -234,8 +234,7 @@ void add_job_options(CLI::App& command, SubmitOptions& options) {
              "Cores of each task; more cores compute more runs at a time (default: one core per "
              "run, at most 16)",
              "C", 1, 1024);
-  add_threads_option(command, job.threads,
-                     "Threads inside each run; more than one is useful for large cells");
+  add_threads_option(command, job.threads, "Threads inside each run");
   command
       .add_option("--scratch", job.scratch,
                   "Working folder of the tasks, on each node's own disk, such as /scratch or "
@@ -257,8 +256,7 @@ void add_job_options(CLI::App& command, SubmitOptions& options) {
 void add_submit(CLI::App& app, Context& context) {
   const auto [command, options] = add_command(
       app, context, "submit", "Queue the runs of manifests on a cluster as an array job", submit);
-  command->add_option("manifest", options->manifests, "YAML manifests")->required();
-  add_expand_options(*command, options->expand);
+  add_manifest_options(*command, options->manifests, options->expand, false);
   add_job_options(*command, *options);
   add_common_options(
       *command, context,

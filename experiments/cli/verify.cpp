@@ -225,8 +225,7 @@ void add_verify(CLI::App& app, Context& context) {
              "Recompute the cached measures of K sampled checkpoints (default: 8)", "K");
   add_number(*command, "--seed", options->seed,
              "Random seed (default: derived from the hash of the last event)");
-  add_threads_option(*command, options->threads,
-                     "Threads of a replay; more than one is useful for large cells");
+  add_threads_option(*command, options->threads, "Threads of a replay");
   add_common_options(
       *command, context,
       R"(Proves that no event or file was changed or lost, and that the tables follow from the events. Each
