@@ -196,5 +196,8 @@ void print_list(const char* name, const std::vector<Facts>& rows, const Context&
 
 /// Formats a size with its unit, such as "12.3 kB".
 std::string format_bytes(double bytes);
+inline std::string format_bytes(std::uint64_t bytes) {
+  return format_bytes(static_cast<double>(bytes));
+}
 
 }  // namespace shearcell::cli

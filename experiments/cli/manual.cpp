@@ -37,10 +37,9 @@ std::string usage(const CLI::Option& option) {
 }
 
 /// Escapes text for a cell of a Markdown table.
-std::string cell(std::string text) {
-  boost::algorithm::replace_all(text, "|", "\\|");
-  boost::algorithm::replace_all(text, "\n", " ");
-  return text;
+std::string cell(std::string_view text) {
+  const std::string line = boost::replace_all_copy(std::string(text), "\n", " ");
+  return boost::replace_all_copy(line, "|", "\\|");
 }
 
 std::string manifest_reference() {
@@ -79,15 +78,13 @@ can also be used in `until`. `critical_size` and all columns below it need `--pe
       "\nCurves for `shearcell table --curve` and for `y` of `plots`:\n\n"
       "| curve | function of | meaning |\n|---|---|---|\n";
   for (const Measure* curve : all_measures(MeasureKind::curve)) {
-    text += fmt::format("| `{}` | `{}` | {} |\n", curve->name, curve->x,
-                        cell(std::string(curve->meaning)));
+    text += fmt::format("| `{}` | `{}` | {} |\n", curve->name, curve->x, cell(curve->meaning));
   }
   text +=
       "\nMeasures of each grain, in exports and in the packings of the report:\n\n"
       "| measure | unit | meaning |\n|---|---|---|\n";
   for (const Measure* one : all_measures(MeasureKind::grains)) {
-    text +=
-        fmt::format("| `{}` | {} | {} |\n", one->name, one->unit, cell(std::string(one->meaning)));
+    text += fmt::format("| `{}` | {} | {} |\n", one->name, one->unit, cell(one->meaning));
   }
   return text;
 }
@@ -99,7 +96,7 @@ std::string estimator_reference() {
       "| estimator | key | number |\n|---|---|---|\n";
   for (const Estimator& one : all_estimators()) {
     const std::string key = one.key.empty() ? "" : fmt::format("`{}`", one.key);
-    text += fmt::format("| `{}` | {} | {} |\n", one.name, key, cell(std::string(one.meaning)));
+    text += fmt::format("| `{}` | {} | {} |\n", one.name, key, cell(one.meaning));
   }
   return text;
 }

@@ -47,8 +47,7 @@ void merge(const std::vector<std::string>& sources, Context& context) {
   }
   for (const MergeReport& report : reports) {
     print_text("{}: merged {} new events (of {}) and {} new checkpoints ({})\n", report.source,
-               report.events, report.head.seq, report.checkpoints,
-               format_bytes(static_cast<double>(report.bytes)));
+               report.events, report.head.seq, report.checkpoints, format_bytes(report.bytes));
   }
 }
 

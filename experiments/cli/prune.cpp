@@ -149,8 +149,7 @@ void prune(const PruneOptions& options, Context& context) {
                 {"bytes_freed", freed.bytes}});
   } else if (freed.bytes > 0) {
     fmt::print("{} measured, then {} freed; `shearcell regenerate` recomputes the deleted files\n",
-               counted(freed.measured, "checkpoint"),
-               format_bytes(static_cast<double>(freed.bytes)));
+               counted(freed.measured, "checkpoint"), format_bytes(freed.bytes));
   } else if (any) {
     fmt::print("Nothing was freed.{}\n", go ? "" : " Use --yes to delete these files.");
   }

@@ -63,7 +63,7 @@ void report(ReportCommand& command, Context& context) {
                        {"problems", made.problems},
                        {"notes", made.notes}});
   }
-  print_text("{}: {}; {}, {}, {}", command.out, format_bytes(static_cast<double>(made.html.size())),
+  print_text("{}: {}; {}, {}, {}", command.out, format_bytes(made.html.size()),
              counted(made.experiments, "experiment"), counted(made.figures, "figure"),
              counted(made.stages, "stage"));
   if (made.interactive) {

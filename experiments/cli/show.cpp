@@ -36,7 +36,7 @@ Facts facts_of(const CheckpointRecord& c) {
           {"file", c.file},
           {"sha256", c.sha256, "checkpoint", c.sha256.substr(0, 12)},
           {"state_hash", c.state_hash, "state", c.state_hash.substr(0, 12)},
-          {"size", c.size, "size", format_bytes(static_cast<double>(c.size))},
+          {"size", c.size, "size", format_bytes(c.size)},
           {"state", name_of(c.state), "",
            std::string(c.state == CheckpointState::recorded ? "" : name_of(c.state))},
           {"observables", c.observables}};
@@ -195,8 +195,7 @@ void show_checkpoint(const Store& store, const CheckpointRecord& record, Context
   const Facts measures = measures_at(store, record, context);
   const std::string file =
       pruned ? fmt::format("pruned; `shearcell regenerate {:.12}` recomputes it", record.sha256)
-             : fmt::format("{} ({}, hash verified)", record.file,
-                           format_bytes(static_cast<double>(record.size)));
+             : fmt::format("{} ({}, hash verified)", record.file, format_bytes(record.size));
   Facts facts = {
       {"sha256", record.sha256, "checkpoint"},
       {"state_hash", record.state_hash, "state"},

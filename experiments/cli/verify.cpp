@@ -147,8 +147,8 @@ void print(const VerifyReport& report, const MeasureCheck& measures) {
     print_text("{}: {}: {}\n", name_of_severity(finding), finding.subject, finding.message);
   }
   print_text("{}, {} ({}), {}: {}\nhead {} {}\n", counted(report.events, "event"),
-             counted(report.checkpoints, "checkpoint"),
-             format_bytes(static_cast<double>(report.bytes)), counted(report.orphans, "orphan"),
+             counted(report.checkpoints, "checkpoint"), format_bytes(report.bytes),
+             counted(report.orphans, "orphan"),
              !report.ok()                                  ? "DAMAGED"
              : report.count(Finding::Severity::unread) > 0 ? "not everything was checked"
              : measures.absent > 0                         ? "measures are missing"
