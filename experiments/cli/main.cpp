@@ -94,8 +94,7 @@ bool is_any(const std::exception& error) {
 ExitCode exit_code_of(const std::exception& error) {
   if (is_any<UsageError, NotOurs, GeometryError>(error)) return kUsageError;
   if (is_any<NumericalFailure>(error)) return kRunFailed;
-  // JSON exceptions come only from records of the store, since all other JSON is checked first.
-  if (is_any<StoreDamaged, nlohmann::json::exception>(error)) return kStoreDamaged;
+  if (is_any<StoreDamaged>(error)) return kStoreDamaged;
   return kOtherError;
 }
 
@@ -185,11 +184,12 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kDone : kUsageError;
   } catch (const nlohmann::json::exception& error) {
+    // These come only from records of the store, since all other JSON is checked first.
     const std::string why = fmt::format(
         "{}: a record in the store is malformed ({}); run `shearcell verify`, and restore the "
         "store from a backup",
         context.store, error.what());
-    return complain(exit_code_of(error), why.c_str());
+    return complain(kStoreDamaged, why.c_str());
   } catch (const std::exception& error) {
     // An exit code that was set earlier takes precedence over the code of this error.
     const bool known = context.exit_code != kDone;

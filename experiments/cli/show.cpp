@@ -12,7 +12,6 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/figure.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/figures/lineage.hpp"
 #include "experiments/figures/run_table.hpp"
