@@ -20,15 +20,7 @@
 namespace shearcell {
 namespace {
 
-// Atom types: Particles::type + 1. kWall is the type of the atom that represents the moving wall.
-enum Type { kGrain = 1, kLeft, kRight, kBottom, kTop, kWall };
 constexpr const char* kSides[] = {"left", "right", "bottom", "top"};
-
-template <typename... Arguments>
-void add(std::string& text, fmt::format_string<Arguments...> line, Arguments&&... arguments) {
-  fmt::format_to(std::back_inserter(text), line, std::forward<Arguments>(arguments)...);
-  text += '\n';
-}
 
 class Deck {
  public:
@@ -63,6 +55,11 @@ class Deck {
   }
 
  private:
+  template <typename... Arguments>
+  void add(fmt::format_string<Arguments...> lines, Arguments&&... arguments) {
+    text_ += fmt::format(lines, std::forward<Arguments>(arguments)...) + '\n';
+  }
+
   void scene(std::string_view units, std::string_view data) {
     atoms(units, data);
     contacts();
@@ -75,34 +72,28 @@ class Deck {
     return std::ranges::find(cell_.wall_grains, side, &WallGrain::side) != cell_.wall_grains.end();
   }
 
-  // The fraction b dt/2m by which a grain's mass is increased. The increase makes LAMMPS's explicit
-  // drag equal to an implicit drag b.
-  double added(double drag) const { return for_users_ ? 0 : 0.5 * drag * scene_.time_step; }
+  // A grain's mass is increased by this factor, 1 + b dt/2m, which makes LAMMPS's explicit drag
+  // equal to an implicit drag b.
+  double raised() const { return for_users_ ? 1 : 1 + 0.5 * scene_.drag_rate * scene_.time_step; }
 
   void atoms(std::string_view units, std::string_view data) {
-    add(text_, "units {}\natom_style sphere\natom_modify map array\nboundary s s p", units);
-    add(text_, "newton off\ncomm_modify vel yes");
-    add(text_,
-        "\n# Grains (type 1), wall grains ({} left, {} right, {} bottom, {} top), and an atom",
-        +kLeft, +kRight, +kBottom, +kTop);
-    add(text_, "# (type {}) that represents the moving wall and touches nothing.", +kWall);
-    add(text_, "read_data {} extra/atom/types 1", data);
+    add("units {}\natom_style sphere\natom_modify map array\nboundary s s p", units);
+    add("newton off\ncomm_modify vel yes");
+    add("\n# Grains (type 1), wall grains (2 left, 3 right, 4 bottom, 5 top), and an atom");
+    add("# (type 6) that represents the moving wall and touches nothing.");
+    add("read_data {} extra/atom/types 1", data);
     // LAMMPS creates no atom outside the box, so the wall's atom is created at x and y of a grain.
     const Eigen::Vector3d start = task_.state.position.col(0) * d_;
-    add(text_, "create_atoms {} single {:.17g} {:.17g} {:.17g} units box", +kWall, start.x(),
-        start.y(), cell_.depth / 2 * d_);
-    add(text_, "# -var finer 2 halves the time step. Stable time steps are below 0.7*sqrt(m/k).");
-    add(text_, "variable finer index 1\ntimestep $({:.17g}/v_finer:%.17g)", scene_.time_step);
-    add(text_, "reset_timestep $({}*v_finer:%.0f)", task_.state.step);
-    add(text_, "group grains type {}\ngroup wall type {}\ngroup free type {} {}", +kGrain, +kWall,
-        +kGrain, +kWall);
-    add(text_, "group planted type {} {} {} {}\ngroup sides type {} {}", +kLeft, +kRight, +kBottom,
-        +kTop, +kLeft, +kRight);
-    add(text_, "group bottom type {}\ngroup top type {}", +kBottom, +kTop);
-    add(text_, "set group wall y {:.17g} diameter {:.17g}", task_.state.wall_height * d_, d_);
-    add(text_, "velocity wall set 0 {:.17g} 0 units box", task_.state.wall_velocity * d_);
-    add(text_,
-        R"(# A mass raised by drag*dt/2 makes LAMMPS's explicit drag equal to implicit drag.
+    add("create_atoms 6 single {:.17g} {:.17g} {:.17g} units box", start.x(), start.y(),
+        cell_.depth / 2 * d_);
+    add("# -var finer 2 halves the time step. Stable time steps are below 0.7*sqrt(m/k).");
+    add("variable finer index 1\ntimestep $({:.17g}/v_finer:%.17g)", scene_.time_step);
+    add("reset_timestep $({}*v_finer:%.0f)", task_.state.step);
+    add("group grains type 1\ngroup wall type 6\ngroup free type 1 6");
+    add("group planted type 2 3 4 5\ngroup sides type 2 3\ngroup bottom type 4\ngroup top type 5");
+    add("set group wall y {:.17g} diameter {:.17g}", task_.state.wall_height * d_, d_);
+    add("velocity wall set 0 {:.17g} 0 units box", task_.state.wall_velocity * d_);
+    add(R"(# A mass raised by drag*dt/2 makes LAMMPS's explicit drag equal to implicit drag.
 set group wall mass $({:.17g}+{:.17g}*dt/2:%.17g)
 set group grains mass {:.17g}
 # Wall grains are heavy, so that contact laws with damping treat them as immovable.
@@ -110,15 +101,14 @@ set group planted mass {:.17g}
 
 # Change diameters and masses of grains here, for example:
 # set atom 1*50 diameter {:.3g} density {:.6g})",
-        area_ * scene_.wall_mass * m_, area_ * scene_.wall_drag * m_,
-        (1 + added(scene_.drag_rate)) * m_, 1e6 * m_, 0.8 * d_,
-        m_ / (std::numbers::pi / 6 * d_ * d_ * d_));
+        area_ * scene_.wall_mass * m_, area_ * scene_.wall_drag * m_, raised() * m_, 1e6 * m_,
+        0.8 * d_, m_ / (std::numbers::pi / 6 * d_ * d_ * d_));
   }
 
   void contacts() {
     const double k = scene_.stiffness * m_;
     if (for_users_) {
-      add(text_, R"(
+      add(R"(
 # The contact law of grains, wall grains and planes, in the syntax of pair_style granular. For a
 # damping of 50/s, and a friction of 0.5 with a tangential spring, write:
 # hooke {0:.6g} 50 tangential linear_history {1:.6g} 1 0.5 damping mass_velocity
@@ -127,10 +117,10 @@ pair_style granular
 pair_coeff * * ${{law}})",
           k, k * 2 / 7);
     } else {
-      add(text_, "pair_style gran/hooke {:.17g} 0 0 0 0 0\npair_coeff * *", k);
+      add("pair_style gran/hooke {:.17g} 0 0 0 0 0\npair_coeff * *", k);
     }
-    add(text_, "neighbor {:.17g} bin\nneigh_modify delay 0 every 1 check yes", 0.15 * d_);
-    add(text_, "neigh_modify exclude group planted planted\nneigh_modify exclude group wall all");
+    add("neighbor {:.17g} bin\nneigh_modify delay 0 every 1 check yes", 0.15 * d_);
+    add("neigh_modify exclude group planted planted\nneigh_modify exclude group wall all");
   }
 
   bool fluid_moves() const { return shears_ && fluid_share(scene_.fluid) != 0; }
@@ -141,51 +131,49 @@ pair_coeff * * ${{law}})",
     const auto cycle = cycle_steps(task_.drive);
     const double turn = static_cast<double>(task_.drive.steps_per_cycle);
     const std::string height = fmt::format("y[{}]", wall_);
-    add(text_, "\n# Heights of the planes, and the tilt of the side walls.");
-    add(text_, "variable bottom equal {}",
+    add("\n# Heights of the planes, and the tilt of the side walls.");
+    add("variable bottom equal {}",
         bottom_moves_ ? height : fmt::format("{:.17g}", cell_.bottom * d_));
-    add(text_, "variable top equal {}",
-        bottom_moves_ ? fmt::format("{:.17g}", cell_.top * d_) : height);
-    add(text_, "variable rise equal {}-({:.17g})", height, task_.state.wall_height * d_);
-    add(text_, "variable rising equal vy[{}]", wall_);
-    if (shears_ || holds_) add(text_, "variable phase equal (step/v_finer)%{}", cycle);
+    add("variable top equal {}", bottom_moves_ ? fmt::format("{:.17g}", cell_.top * d_) : height);
+    add("variable rise equal {}-({:.17g})", height, task_.state.wall_height * d_);
+    add("variable rising equal vy[{}]", wall_);
+    if (shears_ || holds_) add("variable phase equal (step/v_finer)%{}", cycle);
     if (!shears_) return;
-    add(text_, "variable theta equal {:.17g}*sin(2*PI*v_phase/{})*(v_phase<{})",
-        task_.drive.amplitude, turn, turn);
-    add(text_, "variable turn equal {:.17g}-v_theta\nvariable shear equal tan(v_theta)",
+    add("variable theta equal {:.17g}*sin(2*PI*v_phase/{})*(v_phase<{})", task_.drive.amplitude,
+        turn, turn);
+    add("variable turn equal {:.17g}-v_theta\nvariable shear equal tan(v_theta)",
         tilt(task_.drive, task_.state.step).theta);
-    add(text_, "variable rate equal {:.17g}*2*PI/{:.17g}*cos(2*PI*v_phase/{})*(v_phase<{})",
+    add("variable rate equal {:.17g}*2*PI/{:.17g}*cos(2*PI*v_phase/{})*(v_phase<{})",
         task_.drive.amplitude, turn * scene_.time_step, turn, turn);
-    add(text_, "variable shear_rate equal v_rate/cos(v_theta)^2");
+    add("variable shear_rate equal v_rate/cos(v_theta)^2");
   }
 
   // Moves the wall grains of a group. `x` and `vx` are LAMMPS variables of the motion along x: `x`
   // is the displacement from the position in the data file, and `vx` is the velocity. If `rises`,
   // the grains also follow the moving wall in y.
   void carry(const char* group, const char* x, const char* vx, bool rises) {
-    add(text_, "fix {0} {0} move variable v_{1} v_{2} v_zero v_{3} v_{4} v_zero", group, x,
+    add("fix {0} {0} move variable v_{1} v_{2} v_zero v_{3} v_{4} v_zero", group, x,
         rises ? "rise" : "zero", vx, rises ? "rising" : "zero");
   }
 
   // `fix step` comes first. It moves the atom that represents the moving wall, and the wall grains
   // follow the height of this atom.
   void motion() {
-    add(text_,
-        "\n# Velocity Verlet for grains and the moving wall. Wall grains follow their walls.");
-    add(text_, "fix step free nve/sphere\nvariable zero equal 0");
+    add("\n# Velocity Verlet for grains and the moving wall. Wall grains follow their walls.");
+    add("fix step free nve/sphere\nvariable zero equal 0");
     const double top = pose_.top * d_, shear = pose_.tan_theta;
     // The side walls tilt about the top. If the top rises, all points of the side walls also move
     // along x with the velocity -v_rising tan(theta).
     const char* against = bottom_moves_ ? "" : "-v_rising*v_shear";
     if ((has(WallSide::left) || has(WallSide::right)) && shears_) {
-      add(text_, "variable side_x atom (y-v_top)*v_shear-(y-({:.17g}))*({:.17g})", top, shear);
-      add(text_, "variable side_vx atom (y-v_top)*v_shear_rate{}", against);
+      add("variable side_x atom (y-v_top)*v_shear-(y-({:.17g}))*({:.17g})", top, shear);
+      add("variable side_vx atom (y-v_top)*v_shear_rate{}", against);
       carry("sides", "side_x", "side_vx", false);
     }
     if (shears_) {
-      add(text_, "variable bottom_x equal (v_bottom-v_top)*v_shear-({:.17g})",
+      add("variable bottom_x equal (v_bottom-v_top)*v_shear-({:.17g})",
           (pose_.bottom - pose_.top) * d_ * shear);
-      add(text_, "variable bottom_vx equal (v_bottom-v_top)*v_shear_rate{}",
+      add("variable bottom_vx equal (v_bottom-v_top)*v_shear_rate{}",
           bottom_moves_ ? "+v_rising*v_shear" : against);
     }
     if (has(WallSide::bottom) && (shears_ || bottom_moves_)) {
@@ -204,42 +192,40 @@ pair_coeff * * ${{law}})",
     const double x = point[0] * d_, y = point[1] * d_, k = scene_.stiffness * m_;
     const bool upright = side < 2, moves = side == (bottom_moves_ ? 2 : 3);
     if (upright || for_users_) {
-      add(text_,
-          "region {0}_plane plane {1:.17g} {2:.17g} 0 {3:.17g} {4:.17g} 0 side in units box "
+      add("region {0}_plane plane {1:.17g} {2:.17g} 0 {3:.17g} {4:.17g} 0 side in units box "
           "move {5} {6} NULL{7}",
           kSides[side], x, y, normal[0], normal[1], side == 2 && shears_ ? "v_bottom_x" : "NULL",
           moves || (upright && !bottom_moves_) ? "v_rise" : "NULL",
           upright && shears_ ? fmt::format(" rotate v_turn {:.17g} {:.17g} 0 0 0 1", x, y) : "");
     }
     if (for_users_) {
-      add(text_, "fix {0}_plane grains wall/gran/region granular ${{law}} region {0}_plane{1}",
+      add("fix {0}_plane grains wall/gran/region granular ${{law}} region {0}_plane{1}",
           kSides[side], moves ? " contacts" : "");
-      if (moves) add(text_, "compute plane grains reduce sum f_{}_plane[3]", kSides[side]);
+      if (moves) add("compute plane grains reduce sum f_{}_plane[3]", kSides[side]);
     } else if (upright) {
-      add(text_, "fix {0}_plane grains wall/region {0}_plane harmonic {1:.17g} 1 {2:.17g}",
-          kSides[side], k / 2, d_ / 2);
+      add("fix {0}_plane grains wall/region {0}_plane harmonic {1:.17g} 1 {2:.17g}", kSides[side],
+          k / 2, d_ / 2);
     } else {
-      add(text_, "fix {0}_plane grains wall/harmonic {1} v_{0} {2:.17g} 1 {3:.17g} units box",
+      add("fix {0}_plane grains wall/harmonic {1} v_{0} {2:.17g} 1 {3:.17g} units box",
           kSides[side], side == 2 ? "ylo" : "yhi", k / 2, d_ / 2);
     }
   }
 
   void forces() {
-    add(text_, "\n# The planes of the four walls.");
+    add("\n# The planes of the four walls.");
     for (std::size_t side = 0; side < 4; ++side) plane(side);
     if (for_users_) {
-      add(text_, R"(# A grain that passes a plane ends the run.
+      add(R"(# A grain that passes a plane ends the run.
 region cell intersect 4 left_plane right_plane bottom_plane top_plane
 variable outside equal count(grains)-count(grains,cell)
 fix outside all halt 100 v_outside > 0)");
     }
     if (scene_.gravity != 0) {
-      add(text_, "\n# The weight m g.");
-      add(text_, "fix weight grains gravity {:.17g} vector 0 -1 0",
-          scene_.gravity * d_ / (1 + added(scene_.drag_rate)));
+      add("\n# The weight m g.\nfix weight grains gravity {:.17g} vector 0 -1 0",
+          scene_.gravity * d_ / raised());
     }
     if (scene_.drag_rate != 0 && for_users_) {
-      add(text_, R"(
+      add(R"(
 # The drag b of the fluid, proportional to the diameter (Stokes). It is implicit: the forces so far
 # are divided by 1 + b dt/2m. Add other forces before it.
 compute radius grains property/atom radius
@@ -254,10 +240,9 @@ fix drag grains addforce v_drag_x v_drag_y v_drag_z)",
           fluid_moves() ? fmt::format("{:.17g}*(y-v_top)*v_shear_rate", fluid_share(scene_.fluid))
                         : "0");
     } else if (scene_.drag_rate != 0) {
-      add(text_, "fix drag grains viscous {:.17g}", scene_.drag_rate * m_);
+      add("fix drag grains viscous {:.17g}", scene_.drag_rate * m_);
       if (fluid_moves()) {
-        add(text_,
-            "variable flow atom {:.17g}*(y-v_top)*v_shear_rate\nfix flow grains addforce v_flow 0 "
+        add("variable flow atom {:.17g}*(y-v_top)*v_shear_rate\nfix flow grains addforce v_flow 0 "
             "0",
             scene_.drag_rate * fluid_share(scene_.fluid) * m_);
       }
@@ -275,53 +260,46 @@ fix drag grains addforce v_drag_x v_drag_y v_drag_z)",
       force = fmt::format("({0})*(v_phase<{1})+({2:.17g}-mass(wall)/dt)*vy[{3}]*(v_phase>={1})",
                           force, task_.drive.steps_per_cycle, scene_.wall_drag * area_ * m_, wall_);
     }
-    add(text_,
-        "\n# Forces on the moving wall: load, contacts with its plane and its wall grains, drag.");
-    add(text_, "variable push equal {}\nfix push wall addforce 0 v_push 0", force);
+    add("\n# Forces on the moving wall: load, contacts with its plane and its wall grains, drag.");
+    add("variable push equal {}\nfix push wall addforce 0 v_push 0", force);
     if (scene_.wall_drag != 0) {
-      add(text_, "fix wall_drag wall viscous {:.17g}", scene_.wall_drag * area_ * m_);
+      add("fix wall_drag wall viscous {:.17g}", scene_.wall_drag * area_ * m_);
     }
   }
 
   void begin() {
-    add(text_, "\n# The velocities in the data file are from half a step earlier: add f/m dt/2.");
-    add(text_, "# With mpirun, all processes get about the same number of grains.");
+    add("\n# The velocities in the data file are from half a step earlier: add f/m dt/2.");
+    add("# With mpirun, all processes get about the same number of grains.");
     for (const char axis : {'x', 'y', 'z'}) {
-      add(text_, "variable kicked_{0} atom v{0}+{1:.17g}*f{0}/mass", axis, half_step());
+      add("variable kicked_{0} atom v{0}+{1:.17g}*f{0}/mass", axis, 0.5 * scene_.time_step);
     }
-    add(text_, "balance 1.05 shift xyz 20 1.02 weight group 1 planted 0.1");
-    add(text_, "run 0 post no");
-    add(text_, "velocity free set v_kicked_x v_kicked_y v_kicked_z units box");
+    add("balance 1.05 shift xyz 20 1.02 weight group 1 planted 0.1");
+    add("run 0 post no");
+    add("velocity free set v_kicked_x v_kicked_y v_kicked_z units box");
   }
-
-  double half_step() const { return 0.5 * scene_.time_step; }
 
   void stopping() {
     // One process looks for the file `stop`, so that all processes get the same answer.
-    add(text_, "variable asked atom is_file(stop)\ncompute asked wall reduce sum v_asked");
-    add(text_,
-        "variable stop equal c_asked\nfix stop all halt {} v_stop > 0.5 error continue "
-        "message no",
+    add("variable asked atom is_file(stop)\ncompute asked wall reduce sum v_asked");
+    add("variable stop equal c_asked\nfix stop all halt {} v_stop > 0.5 error continue message no",
         task_.check_every);
-    add(text_, "thermo {}\nthermo_style custom step\nthermo_modify flush yes", task_.check_every);
+    add("thermo {}\nthermo_style custom step\nthermo_modify flush yes", task_.check_every);
   }
 
   // The time of a frame's velocities must be half a step before the time of its positions. In
   // LAMMPS, both times are equal, so f/m dt/2 is subtracted from the velocities of LAMMPS.
   void frames() {
     for (const char axis : {'x', 'y', 'z'}) {
-      add(text_, "variable half_{0} atom v{0}-{1:.17g}*f{0}/mass", axis, half_step());
+      add("variable half_{0} atom v{0}-{1:.17g}*f{0}/mass", axis, 0.5 * scene_.time_step);
     }
-    add(text_, "variable next equal (floor(step/{0})+1)*{0}", task_.stride);
-    add(text_, "label next");
-    add(text_, "variable goal string $(v_next*(v_next<{0})+{0}*(v_next>={0}):%.0f)", task_.end);
-    add(text_, "run ${{goal}} upto pre no post no");
-    add(text_,
-        "write_dump free custom frame.new id xu yu zu v_half_x v_half_y v_half_z modify "
+    add("variable next equal (floor(step/{0})+1)*{0}", task_.stride);
+    add("label next");
+    add("variable goal string $(v_next*(v_next<{0})+{0}*(v_next>={0}):%.0f)", task_.end);
+    add("run ${{goal}} upto pre no post no");
+    add("write_dump free custom frame.new id xu yu zu v_half_x v_half_y v_half_z modify "
         "format float %.17g");
-    add(text_, "shell mv frame.new frame.$(step:%.0f)");
-    add(text_, "if \"$(step:%.0f) == ${{goal}} && ${{goal}} < {}\" then \"jump SELF next\"",
-        task_.end);
+    add("shell mv frame.new frame.$(step:%.0f)");
+    add("if \"$(step:%.0f) == ${{goal}} && ${{goal}} < {}\" then \"jump SELF next\"", task_.end);
   }
 
   // Defines the output and the number of steps. By default, the steps cover one shear cycle, or one
@@ -330,7 +308,7 @@ fix drag grains addforce v_drag_x v_drag_y v_drag_z)",
   void watching(std::string_view name) {
     const auto steps = shears_ ? cycle_steps(task_.drive)
                                : static_cast<std::uint64_t>(std::nearbyint(1 / scene_.time_step));
-    add(text_, R"(
+    add(R"(
 # Number of steps, and steps between written positions: lmp -in in.{0} -var steps 1000
 variable steps index $({1}*v_finer:%.0f)
 variable every index $({2}*v_finer:%.0f)
@@ -343,7 +321,7 @@ dump_modify frames sort id format float %.12g)",
   }
 
   void to_the_end(std::string_view name) {
-    add(text_, R"(run ${{steps}} pre no
+    add(R"(run ${{steps}} pre no
 
 # Writes the grains at the end. The box shrinks to the planes, without the wall grains, so add runs
 # before this line. A manifest can start from the file if all grains are equal and the cell upright.
@@ -381,20 +359,21 @@ std::string lammps_data(const Particles& all, std::string_view title) {
   const Eigen::Vector3d high =
       all.position.rowwise().maxCoeff().cwiseMax(corners.rowwise().maxCoeff()).array() + all.radius;
   std::string text;
-  add(text, "{}\n\n{} atoms\n{} atom types\n", title, all.particles(), +kTop);
-  add(text, "{:.17g} {:.17g} xlo xhi\n{:.17g} {:.17g} ylo yhi\n0 {:.17g} zlo zhi\n", low.x(),
-      high.x(), low.y(), high.y(), all.edges(2, 2));
-  add(text, "Atoms # sphere\n");
+  const auto out = std::back_inserter(text);
+  fmt::format_to(out, "{}\n\n{} atoms\n5 atom types\n\n", title, all.particles());
+  fmt::format_to(out, "{:.17g} {:.17g} xlo xhi\n{:.17g} {:.17g} ylo yhi\n0 {:.17g} zlo zhi\n",
+                 low.x(), high.x(), low.y(), high.y(), all.edges(2, 2));
+  text += "\nAtoms # sphere\n\n";
   const double density = all.mass / (4.0 / 3.0 * std::numbers::pi * std::pow(all.radius, 3));
   for (std::size_t i = 0; i < all.particles(); ++i) {
     const auto r = all.position.col(static_cast<Eigen::Index>(i));
-    add(text, "{} {} {:.17g} {:.17g} {:.17g} 0 0 {}", i + 1, all.type[i] + 1, 2 * all.radius,
-        density, fmt::join(r, " "), all.image[i]);
+    fmt::format_to(out, "{} {} {:.17g} {:.17g} {:.17g} 0 0 {}\n", i + 1, all.type[i] + 1,
+                   2 * all.radius, density, fmt::join(r, " "), all.image[i]);
   }
-  add(text, "\nVelocities\n");
+  text += "\nVelocities\n\n";
   for (std::size_t i = 0; i < all.particles(); ++i) {
     const auto v = all.velocity.col(static_cast<Eigen::Index>(i));
-    add(text, "{} {:.17g} 0 0 0", i + 1, fmt::join(v, " "));
+    fmt::format_to(out, "{} {:.17g} 0 0 0\n", i + 1, fmt::join(v, " "));
   }
   return text;
 }
