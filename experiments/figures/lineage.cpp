@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 
 #include "experiments/manifest/parameters.hpp"
 #include "provenance/errors.hpp"
@@ -189,13 +190,13 @@ std::string lineage_text(json provenance) {
 }
 
 std::vector<FigureRecord> figure_records(const Store& store) {
+  constexpr std::string_view prefix = "figure/";
   std::vector<FigureRecord> records;
-  for (const FigureRecord& figure : store.figures()) {
-    for (const Event& event : store.events("figure/" + figure.name, "FigureGenerated")) {
-      records.push_back({figure.name, event.seq, event.recorded_at, event.body()});
-    }
+  for (const Event& event : store.events("", events::kFigureGenerated)) {
+    if (!event.stream.starts_with(prefix)) continue;
+    records.push_back(
+        {event.stream.substr(prefix.size()), event.seq, event.recorded_at, event.body()});
   }
-  std::ranges::sort(records, {}, &FigureRecord::seq);
   return records;
 }
 
@@ -302,23 +303,18 @@ std::optional<PublishedFile> find_published(const Store& store, const std::files
   }
   const std::string sha256 = sha256_hex(*content);
   const std::string name = file.filename().string();
-  std::vector<FigureRecord> records = figure_records(store);
-  std::reverse(records.begin(), records.end());  // the newest first
-  for (const FigureRecord& record : records) {
+  const std::vector<FigureRecord> records = figure_records(store);
+  std::optional<PublishedFile> by_lineage, by_name;
+  for (const FigureRecord& record : records | std::views::reverse) {  // the newest first
     for (const auto& [output, hash] : files_of(record)) {
       if (hash == sha256) return PublishedFile{sha256, hash, record};
+      if (output != name) continue;
+      const bool listed = hash_in_lineage_beside(file, figure_name(record)) == hash;
+      if (listed && !by_lineage) by_lineage = {sha256, hash, record};
+      if (!by_name) by_name = {sha256, hash, record};
     }
   }
-  std::optional<PublishedFile> by_name;
-  for (const FigureRecord& record : records) {
-    const auto outputs = files_of(record);
-    const auto output = outputs.find(name);
-    if (output == outputs.end()) continue;
-    const PublishedFile found{sha256, output->second, record};
-    if (hash_in_lineage_beside(file, figure_name(record)) == output->second) return found;
-    if (!by_name) by_name = found;
-  }
-  return by_name;
+  return by_lineage ? by_lineage : by_name;
 }
 
 std::vector<Finding> check_inputs(const Store& store, const FigureLineage& lineage) {
