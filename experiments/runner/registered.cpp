@@ -87,18 +87,16 @@ std::string VariantNames::of(const Stage& stage, const Place& place) const {
 }
 
 std::vector<RegisteredManifest> newest_manifests(const Store& store) {
-  std::vector<RegisteredManifest> newest;
+  nlohmann::ordered_map<std::string, RegisteredManifest> newest;  // by experiment
   for (RegisteredManifest& manifest : registered_manifests(store)) {
-    const auto known =
-        std::ranges::find(newest, manifest.experiment, &RegisteredManifest::experiment);
-    if (known == newest.end()) {
-      newest.push_back(std::move(manifest));
-    } else {
-      *known = std::move(manifest);
-    }
+    newest[manifest.experiment] = std::move(manifest);
   }
-  for (RegisteredManifest& manifest : newest) manifest.content = recorded_manifest(manifest.text);
-  return newest;
+  std::vector<RegisteredManifest> all;
+  for (auto& [experiment, manifest] : newest) {
+    manifest.content = recorded_manifest(manifest.text);
+    all.push_back(std::move(manifest));
+  }
+  return all;
 }
 
 }  // namespace shearcell
