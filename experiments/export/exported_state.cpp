@@ -78,8 +78,9 @@ std::string frame_name(const ExportedState& frame) {
 ExportedState frame_of(const Checkpoint& checkpoint, const CheckpointRecord& record, const Run& run,
                        const MeasureSources& sources, std::uint64_t every) {
   ExportedState frame;
-  const Measures measures = sources.measures_of(
-      record, every, checkpoint, analyse_stored(record, checkpoint), enters_frames, frame.unread);
+  const Analysis analysis = analyse_stored(record, checkpoint);
+  const Measures measures =
+      sources.measures_of(record, every, &checkpoint, &analysis, enters_frames, frame.unread);
   const double rate = measures.number("shear_rate_per_s");  // known only for a shear
   static_cast<Particles&>(frame) =
       particles_of(checkpoint.cell, pose_of(checkpoint), checkpoint.state,

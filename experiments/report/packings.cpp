@@ -216,7 +216,7 @@ json make_frame(const CheckpointRecord& record, const MeasureSources& sources,
   const Analysis analysis = analyse_stored(record, checkpoint);
   const WallPose pose = pose_of(checkpoint);
   const Measures measures =
-      sources.measures_of(record, 1, checkpoint, analysis, enters_page, unread);
+      sources.measures_of(record, 1, &checkpoint, &analysis, enters_page, unread);
   const std::vector<GrainField> fields =
       make_fields(measures, analysis.grains, sources.facts(record.run));
   const EncodedFrame encoded = encode_frame(checkpoint, pose, fields);

@@ -190,7 +190,8 @@ class Measuring {
   }
 
   void read(CheckpointMeasures& one, const std::vector<json>& results) try {
-    one.measures = {};
+    const auto none = [](const Provider&) { return false; };
+    one.measures = sources_.measures_of(one, 1, nullptr, nullptr, none, outcome_);
     one.lacking.clear();
     for (std::size_t p = 0; p < wanted_; ++p) {
       if (results[p].is_null()) {
@@ -199,7 +200,6 @@ class Measuring {
         providers_[p]->read(results[p], one.measures);
       }
     }
-    sources_.add_recorded(one, one.measures);
   } catch (const AnalysisError& problem) {
     throw StoreDamaged(
         fmt::format("{} holds a wrong result ({}); `shearcell regenerate {:.12}` "
@@ -383,27 +383,16 @@ std::optional<nlohmann::json> MeasureSources::compute(
   return std::nullopt;
 }
 
-void MeasureSources::add_recorded(const CheckpointRecord& record, Measures& measures) const {
-  MeasureOutcome none;
-  for (const Provider& one : all_providers()) {
-    if (one.from != ComputedFrom::record) continue;
-    if (const auto result = compute(one, record, 1, nullptr, nullptr, none)) {
-      one.read(*result, measures);
-    }
-  }
-}
-
 Measures MeasureSources::measures_of(const CheckpointRecord& record, std::uint64_t every,
-                                     const Checkpoint& checkpoint, const Analysis& analysis,
+                                     const Checkpoint* checkpoint, const Analysis* analysis,
                                      bool (*wanted)(const Provider&),
                                      MeasureOutcome& unread) const {
   Measures measures;
   for (const Provider& one : all_providers()) {
-    if (!wanted(one)) continue;
-    const auto result = compute(one, record, every, &checkpoint, &analysis, unread);
+    if (one.from != ComputedFrom::record && !wanted(one)) continue;
+    const auto result = compute(one, record, every, checkpoint, analysis, unread);
     if (result) one.read(*result, measures);
   }
-  add_recorded(record, measures);
   return measures;
 }
 

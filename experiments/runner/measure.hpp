@@ -125,14 +125,12 @@ class MeasureSources {
                                         std::uint64_t every, const Checkpoint* checkpoint,
                                         const Analysis* analysis, MeasureOutcome& unread) const;
 
-  /// Adds the measures that need only the log (ComputedFrom::record).
-  void add_recorded(const CheckpointRecord& record, Measures& measures) const;
-
-  /// The measures of a loaded checkpoint: the results of all providers for which `wanted` is true,
-  /// and the measures that need only the log. If an earlier checkpoint cannot be read, leaves out
-  /// the measures that need it and adds the reason to `unread`.
+  /// The results of all providers for which `wanted` is true, and of all providers that need only
+  /// the log (ComputedFrom::record). `checkpoint` and `analysis` may be null if `wanted` is false
+  /// for all providers. If an earlier checkpoint cannot be read, leaves out the measures that need
+  /// it and adds the reason to `unread`.
   Measures measures_of(const CheckpointRecord& record, std::uint64_t every,
-                       const Checkpoint& checkpoint, const Analysis& analysis,
+                       const Checkpoint* checkpoint, const Analysis* analysis,
                        bool (*wanted)(const Provider&), MeasureOutcome& unread) const;
 
  private:
