@@ -18,7 +18,6 @@
 #include "experiments/manifest/variants.hpp"
 #include "experiments/runner/host.hpp"
 #include "experiments/runner/outlook.hpp"
-#include "experiments/runner/registered.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/json_text.hpp"
 #include "provenance/limits.hpp"

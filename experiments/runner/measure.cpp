@@ -7,9 +7,7 @@
 #include <atomic>
 #include <exception>
 #include <iterator>
-#include <map>
 #include <mutex>
-#include <optional>
 #include <utility>
 
 #include "analysis/error.hpp"

@@ -6,9 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <map>
 #include <numeric>
-#include <set>
 
 #include "core/drive.hpp"
 #include "experiments/manifest/conversion.hpp"
@@ -16,7 +14,6 @@
 #include "experiments/manifest/manifest.hpp"
 #include "provenance/errors.hpp"
 #include "provenance/json_text.hpp"
-#include "provenance/limits.hpp"
 #include "provenance/words.hpp"
 
 namespace shearcell {

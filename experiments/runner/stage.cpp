@@ -7,7 +7,6 @@
 #include <bit>
 #include <chrono>
 #include <cmath>
-#include <functional>
 #include <memory>
 #include <utility>
 
@@ -31,7 +30,6 @@
 #include "provenance/io/child_process.hpp"
 #include "provenance/io/clock.hpp"
 #include "provenance/json_text.hpp"
-#include "provenance/lineage.hpp"
 #include "provenance/words.hpp"
 
 namespace shearcell {

@@ -6,14 +6,12 @@
 #include <utf8proc.h>
 
 #include <algorithm>
-#include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 #include <memory>
 #include <sstream>
 #include <vector>
 
-#include "experiments/manifest/document.hpp"
 #include "provenance/io/clock.hpp"
 
 namespace shearcell {

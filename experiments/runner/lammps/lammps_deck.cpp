@@ -10,7 +10,6 @@
 #include <iterator>
 #include <numbers>
 #include <sstream>
-#include <string_view>
 
 #include "core/drive.hpp"
 #include "provenance/io/child_process.hpp"

@@ -13,7 +13,6 @@
 
 #include "core/drive.hpp"
 #include "experiments/runner/stop.hpp"
-#include "provenance/io/file.hpp"
 #include "provenance/io/read_number.hpp"
 
 namespace shearcell {
