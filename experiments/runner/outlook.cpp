@@ -506,9 +506,9 @@ double checkpoint_bytes(const Geometry& shape) {
 
 Rates::Rates(const std::vector<Stage>& stages) {
   for (const Stage& stage : stages) {
-    Sum& sum = sums_[engine_of(stage.resolved)];
-    sum.steps += stage.particle_steps;
-    sum.seconds += stage.wall_seconds;
+    Effort& sum = sums_[engine_of(stage.resolved)];
+    sum.particle_steps += stage.particle_steps;
+    sum.wall_seconds += stage.wall_seconds;
   }
 }
 
@@ -516,8 +516,8 @@ Rate Rates::of(const Stage& stage) const {
   const EngineKind engine = engine_of(stage.resolved);
   const auto grains = static_cast<double>(stage.grains);
   const auto sum = sums_.find(engine);
-  if (sum != sums_.end() && sum->second.seconds >= 1) {
-    return {sum->second.steps / sum->second.seconds, true};
+  if (sum != sums_.end() && sum->second.wall_seconds >= 1) {
+    return {sum->second.particle_steps / sum->second.wall_seconds, true};
   }
   const bool ours = engine == EngineKind::shearcell;
   return {ours ? assumed_rate(kOurRates, grains) : assumed_rate(kLammpsRates, grains), false};

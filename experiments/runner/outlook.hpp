@@ -169,10 +169,7 @@ class Rates {
   Rate of(const Stage& stage) const;
 
  private:
-  struct Sum {
-    double steps = 0, seconds = 0;
-  };
-  std::map<EngineKind, Sum> sums_;
+  std::map<EngineKind, Effort> sums_;  // over the stages of each engine
 };
 
 /// The remaining work of several stages.

@@ -68,22 +68,19 @@ VariantNames::VariantNames(const std::vector<Stage>& stages, const Labels& label
   }
   for (const auto& [group, vary] : values) {
     const auto stated = labels.find(std::get<1>(group));
-    auto names =
+    const auto names =
         variant_names(vary, stated == labels.end() ? std::vector<VariantLabel>() : stated->second);
-    if (std::get<1>(group) == kPackings) {
-      for (auto& [parameters, name] : names) name = "packing " + name;
-      if (names.size() < 2) continue;  // a single packing has the name "packing"
+    const bool of_packings = std::get<1>(group) == kPackings;
+    if (of_packings && names.size() < 2) continue;  // a single packing has the name "packing"
+    for (const auto& [value, name] : names) {
+      names_[{group, value}] = of_packings ? "packing " + name : name;
     }
-    names_[group] = std::move(names);
   }
 }
 
 std::string VariantNames::of(const Stage& stage, const Place& place) const {
-  const auto [group, vary] = key_of(stage, place);
-  const auto names = names_.find(group);
-  if (names == names_.end()) return place.variant;
-  const auto name = names->second.find(vary);
-  return name == names->second.end() ? place.variant : name->second;
+  const auto name = names_.find(key_of(stage, place));
+  return name == names_.end() ? place.variant : name->second;
 }
 
 std::vector<RegisteredManifest> newest_manifests(const Store& store) {

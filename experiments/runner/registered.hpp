@@ -40,7 +40,7 @@ class VariantNames {
   /// The group in which names must be unique, and the values that determine the run's name.
   static std::pair<Group, nlohmann::json> key_of(const Stage& stage, const Place& place);
 
-  std::map<Group, std::map<nlohmann::json, std::string>> names_;  // keys: see key_of()
+  std::map<std::pair<Group, nlohmann::json>, std::string> names_;  // keys: see key_of()
 };
 
 /// The last registered manifest of each experiment, in the order in which the experiments were

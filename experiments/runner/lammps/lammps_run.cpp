@@ -23,10 +23,6 @@ namespace fs = std::filesystem;
 constexpr std::chrono::milliseconds kCheckInterval{20};
 constexpr double kHelpSeconds = 10;
 
-std::string read_text(const fs::path& file) {
-  return read_plain(file, kLargestFile).value_or("");
-}
-
 std::string last_line(std::string_view text) {
   while (text.ends_with('\n')) text.remove_suffix(1);
   const auto newline = text.rfind('\n');
@@ -182,8 +178,8 @@ std::uint64_t LammpsRun::step() {
 }
 
 void LammpsRun::fail(int code) const {
-  const std::string log = read_text(folder_.path() / "log");
-  const std::string said = read_text(folder_.path() / "said");
+  const std::string log = read_plain(folder_.path() / "log", kLargestFile).value_or("");
+  const std::string said = read_plain(folder_.path() / "said", kLargestFile).value_or("");
   std::string why;
   for (const std::string* text : {&log, &said}) {
     const auto at = text->find("ERROR");
