@@ -702,6 +702,20 @@ Replay replay(Store& store, const CheckpointRecord& record, const StageOptions& 
   return result;
 }
 
+/// Why this program would give the steps before the checkpoint other bits; "" if it would not.
+std::string other_bits(const RunLineage& run, const CheckpointHistory& made) {
+  if (engine_of(run.stage.resolved) != EngineKind::shearcell) {
+    return "LAMMPS computed this state, and LAMMPS runs cannot be repeated bit for bit";
+  }
+  if (!made.attempt) return "";
+  const Attempt& by = run.attempts[*made.attempt];
+  if (by.bits_version == bits_version) return "";
+  return fmt::format(
+      "shearcell {} computed this state with bits_version {}, but this program has bits_version "
+      "{}, so its results differ in the last bits",
+      maker_of(by.host).version, by.bits_version, bits_version);
+}
+
 void restore_if_pruned(Store& store, const CheckpointRecord& record, const StageOptions& options) {
   if (record.state != CheckpointState::pruned) return;
   RunLineages known;
@@ -770,24 +784,6 @@ nlohmann::json to_json(const Divergence& divergence) {
           {"ulp", divergence.ulp},
           {"why", divergence.message}};
 }
-
-namespace {
-
-/// Why this program would give the steps before the checkpoint other bits; "" if it would not.
-std::string other_bits(const RunLineage& run, const CheckpointHistory& made) {
-  if (engine_of(run.stage.resolved) != EngineKind::shearcell) {
-    return "LAMMPS computed this state, and LAMMPS runs cannot be repeated bit for bit";
-  }
-  if (!made.attempt) return "";
-  const Attempt& by = run.attempts[*made.attempt];
-  if (by.bits_version == bits_version) return "";
-  return fmt::format(
-      "shearcell {} computed this state with bits_version {}, but this program has bits_version "
-      "{}, so its results differ in the last bits",
-      maker_of(by.host).version, by.bits_version, bits_version);
-}
-
-}  // namespace
 
 std::optional<std::string> why_not_again(const Store& store, const CheckpointRecord& record,
                                          RunLineages& known) {
