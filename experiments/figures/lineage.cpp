@@ -259,10 +259,7 @@ json to_json(const FigureLineage& lineage) {
                          {"text", m.text}});
   }
   for (const FigureInput& input : lineage.inputs) {
-    json lines = json::array(), checkpoints = json::array();
-    for (const ManifestLine& line : input.lines) {
-      lines.push_back({{"key", line.key}, {"line", line.line}, {"text", line.text}});
-    }
+    json checkpoints = json::array();
     const RunLineage& run = lineage.runs.at(input.run);
     for (const std::string& c : input.checkpoints) checkpoints.push_back(checkpoint_json(c, run));
     inputs.push_back({{"run", input.run},
@@ -270,7 +267,7 @@ json to_json(const FigureLineage& lineage) {
                       {"variant", input.variant},
                       {"seed", input.seed},
                       {"manifest", input.manifest},
-                      {"manifest_lines", lines},
+                      {"manifest_lines", input.lines},
                       {"overrides", input.overrides},
                       {"cycles", input.states.cycles},
                       {"state_hash", input.states.state_hash},

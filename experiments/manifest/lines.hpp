@@ -15,6 +15,7 @@ struct ManifestLine {
   std::string key;   ///< "experiment", "scales.desk", "sweep.grid.fluid", "seeds"
   int line = 0;      ///< counted from 1
   std::string text;  ///< the line, without surrounding blanks, safe to print
+  NLOHMANN_DEFINE_TYPE_INTRUSIVE(ManifestLine, key, line, text)
 };
 
 /// The lines that define a run and its figure: experiment, scale, the value of each key in `swept`,
