@@ -98,8 +98,7 @@ End end_by(const Stage& stage, const Ask& ask, std::span<const CheckpointRecord>
   return end;
 }
 
-/// Whether the stage is completed and a recorded request covers `ask`: the recorded request has the
-/// same `until`, and cannot end the stage earlier than `ask` would.
+/// Whether a completed stage needs no more cycles for `ask`, which has an `until`; see outlook().
 bool is_covered(const Stage& stage, const Ask& ask) {
   return stage.state == StageState::completed && !ask.until.is_null() &&
          std::ranges::any_of(asks_of(stage.memberships), [&](const Ask& recorded) {
