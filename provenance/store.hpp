@@ -60,7 +60,9 @@ struct MergeReport {
   std::uint64_t events = 0;       ///< number of copied events
   std::uint64_t checkpoints = 0;  ///< number of copied files
   std::uint64_t bytes = 0;        ///< total size of the copied files
-  std::size_t absent = 0;         ///< MeasureCheck::absent of the source; set by merge_stores()
+  // Set by merge_stores():
+  std::size_t absent = 0;             ///< MeasureCheck::absent of the source
+  std::vector<Finding> refused = {};  ///< why measures of the source were not copied
 };
 
 /// Decodes the checkpoint file `image`. Throws StoreDamaged if the file is damaged or not

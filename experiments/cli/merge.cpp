@@ -16,16 +16,17 @@ void merge(const std::vector<std::string>& sources, Context& context) {
     throw NotFound(fmt::format("'{}': this folder contains no store", source));
   }
   Store store(context.store, Access::create);
-  std::vector<Finding> refused;
-  const auto reports = merge_stores(store, {sources.begin(), sources.end()}, {}, &refused);
+  const auto reports = merge_stores(store, {sources.begin(), sources.end()});
   MeasureOutcome not_copied;
-  for (const Finding& finding : refused) {
-    const std::string what = finding.subject + ": " + finding.message;
-    if (finding.severity == Finding::Severity::error) {
-      not_copied.damage.insert(what);
-    } else {
-      print_stderr("measures cannot be cached: {}\n", what);
-      fail(context, kOtherError);
+  for (const MergeReport& report : reports) {
+    for (const Finding& finding : report.refused) {
+      const std::string what = report.source + ": " + finding.message;
+      if (finding.severity == Finding::Severity::error) {
+        not_copied.damage.insert(what);
+      } else {
+        print_stderr("measures cannot be cached: {}\n", what);
+        fail(context, kOtherError);
+      }
     }
   }
   print_problems(not_copied, "measures not copied", context);

@@ -325,8 +325,7 @@ MeasureCheck check_measures(const Store& store, std::size_t count, std::uint64_t
 
 std::vector<MergeReport> merge_stores(Store& store,
                                       const std::vector<std::filesystem::path>& sources,
-                                      const std::set<std::string>& runs,
-                                      std::vector<Finding>* refused) {
+                                      const std::set<std::string>& runs) {
   std::vector<MergeReport> reports = store.merge(sources, runs);
   // The seed comes from the head of `store`. Someone who forges one of the `sources` does not know
   // this head, and so cannot predict which checkpoints are checked.
@@ -345,10 +344,7 @@ std::vector<MergeReport> merge_stores(Store& store,
     } catch (const StoreDamaged& damage) {  // in tables of the source, which Store::merge() ignores
       check.findings.push_back({Finding::Severity::error, source, "", damage.what()});
     }
-    for (Finding& finding : check.findings) finding.subject = source;
-    if (refused != nullptr) {
-      refused->insert(refused->end(), check.findings.begin(), check.findings.end());
-    }
+    reports[k].refused = std::move(check.findings);
   }
   return reports;
 }

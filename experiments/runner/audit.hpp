@@ -56,10 +56,9 @@ MeasureCheck check_measures(const Store& store, std::size_t count, std::uint64_t
 
 /// Calls Store::merge(). Then copies the cached measures of each source, except measures that the
 /// log of the source shows to be altered, and except all measures if check_sample() of three
-/// checkpoints finds an error. Appends what was not copied, with the reason, to `refused`.
+/// checkpoints finds an error. MergeReport::refused lists what was not copied, with the reason.
 std::vector<MergeReport> merge_stores(Store& store,
                                       const std::vector<std::filesystem::path>& sources,
-                                      const std::set<std::string>& runs = {},
-                                      std::vector<Finding>* refused = nullptr);
+                                      const std::set<std::string>& runs = {});
 
 }  // namespace shearcell
