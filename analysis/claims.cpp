@@ -188,15 +188,13 @@ Verdict at_looks(const ClaimSpec& claim, Claim stated, const ClaimSides& sides,
     add_note(verdict.note,
              fmt::format("{} of {} have ended; the next look (interim analysis) is at {}", ended,
                          counted(seeds.size(), "seed"), counted(*next, "seed")));
-    if (looks.size() > 1 && verdict.estimate && std::isfinite(verdict.spread)) {
-      Claim powered = stated;
-      powered.margin = verdict.margin;  // of a bound: the published number
+    if (const auto& now = verdict.estimate; looks.size() > 1 && now && std::isfinite(now->spread)) {
       // A seed may have several runs (one of each variant), or a run that has no number.
       const auto used = std::ranges::count_if(std::span(seeds).first(shown),
                                               [&](auto seed) { return begun.contains(seed); });
       const double spread =
-          verdict.spread * std::sqrt(static_cast<double>(used) / static_cast<double>(verdict.runs));
-      const auto power = power_of(powered, *verdict.estimate, spread, verdict.groups, looks);
+          now->spread * std::sqrt(static_cast<double>(used) / static_cast<double>(verdict.runs));
+      const auto power = power_of(verdict, now->value, spread, now->groups, looks);
       const LookPower& there = power[static_cast<std::size_t>(next - looks.begin())];
       verdict.power = there.as_claimed + there.against;
       add_note(verdict.note,

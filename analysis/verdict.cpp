@@ -35,13 +35,13 @@ std::optional<std::size_t> runs_needed(const Estimate& estimate, double margin, 
 json claim_of(const Verdict& verdict) {
   json estimate, interval, runs_needed;
   if (verdict.estimate) {
-    estimate = rounded(*verdict.estimate, significant);
-    interval = {rounded(verdict.interval.low, significant),
-                rounded(verdict.interval.high, significant)};
+    const auto& [low, high] = verdict.estimate->interval;
+    estimate = rounded(verdict.estimate->value, significant);
+    interval = {rounded(low, significant), rounded(high, significant)};
   }
   if (verdict.runs_needed) runs_needed = *verdict.runs_needed;
   json claim = {{"id", verdict.id},
-                {"claim", verdict.claim},
+                {"claim", verdict.text},
                 {"quantity", verdict.quantity},
                 {"estimate", estimate},
                 {"interval", interval},
@@ -73,13 +73,13 @@ std::string estimate_with_interval(const Verdict& verdict) {
     return waits ? fmt::format("{} times {}", factor(value), value < 0 ? "earlier" : "later")
                  : fmt::format("{:.3g}", value);
   };
-  const auto [low, high] = verdict.interval;
+  const auto& [low, high] = verdict.estimate->interval;
   const bool any_end = std::isfinite(low) || std::isfinite(high);
   return fmt::format(
       "{}, {:.3g} % interval {}",
-      !std::isfinite(*verdict.estimate)
+      !std::isfinite(verdict.estimate->value)
           ? "no finite value"
-          : (waits ? "the events of the first group come " : "") + text(*verdict.estimate),
+          : (waits ? "the events of the first group come " : "") + text(verdict.estimate->value),
       100 * verdict.level, any_end ? text(low) + " to " + text(high) : text(low));
 }
 
@@ -99,12 +99,7 @@ Ruling ruling_of(const Interval& interval, double margin, Relation claimed) {
 
 Verdict decide(const Claim& claim, std::string quantity, const std::optional<Estimate>& estimate,
                std::size_t runs, std::string note, Table entered, Counted counted) {
-  Verdict verdict;
-  verdict.id = claim.id;
-  verdict.claim = claim.text;
-  verdict.quantity = std::move(quantity);
-  verdict.margin = claim.margin;
-  verdict.level = claim.level;
+  Verdict verdict{claim, std::move(quantity), estimate};
   verdict.runs = runs;
   verdict.counted = counted;
   verdict.note = std::move(note);
@@ -113,12 +108,7 @@ Verdict decide(const Claim& claim, std::string quantity, const std::optional<Est
     verdict.ruling = Ruling::undecidable;
     add_note(verdict.note, claim.cannot_be_decided);
   }
-  if (!estimate) return verdict;
-  verdict.estimate = estimate->value;
-  verdict.interval = estimate->interval;
-  verdict.spread = estimate->spread;
-  verdict.groups = estimate->groups;
-  if (verdict.ruling == Ruling::undecidable) return verdict;
+  if (!estimate || verdict.ruling == Ruling::undecidable) return verdict;
   verdict.ruling = ruling_of(estimate->interval, claim.margin, claim.claimed);
   if (verdict.ruling == Ruling::undecided) {
     verdict.runs_needed = runs_needed(*estimate, claim.margin, claim.claimed);
@@ -157,7 +147,7 @@ Table entered_table(std::span<const Verdict> verdicts) {
       if (places.back() == table.columns.size()) table.columns.push_back(column);
     }
     for (const TableRow& values : verdict.entered.rows) {
-      TableRow& row = table.rows.emplace_back(TableRow{verdict.id, verdict.claim});
+      TableRow& row = table.rows.emplace_back(TableRow{verdict.id, verdict.text});
       row.resize(table.columns.size());
       for (std::size_t k = 0; k < values.size(); ++k) row[places[k]] = values[k];
     }

@@ -48,34 +48,28 @@ template <>
 inline constexpr auto kNames<Counted> = names_in_order<Counted>("runs", "pairs",
                                                                 "runs per variant");
 
-struct Verdict {
-  std::string id = {};             ///< Claim::id
-  std::string claim;               ///< Claim::text
-  std::string quantity;            ///< what is estimated, with its unit
-  std::optional<double> estimate;  ///< empty if too few runs have a value
-  Interval interval;               ///< undefined without an estimate
-  double level = confidence_level;
+/// A claim, and what the runs say about it.
+struct Verdict : Claim {
+  std::string quantity = {};              ///< what is estimated, with its unit
+  std::optional<Estimate> estimate = {};  ///< empty if too few runs have a value
   /// The event of a claim on waiting times; "" for other claims. If the claim has an event,
-  /// then `estimate`, `interval` and `margin` are log2 of a ratio of waiting times (first group /
-  /// second group).
+  /// then `estimate` and `margin` are log2 of a ratio of waiting times (first group / second
+  /// group).
   std::string waits_for = {};
-  double margin = 0;
   Ruling ruling = Ruling::undecided;
   std::size_t runs = 0;  ///< number of runs or of pairs; see `counted`
   Counted counted = Counted::runs;
-  std::size_t censored = 0;                ///< runs that ended before the event
-  std::optional<std::size_t> runs_needed;  ///< for an undecided claim; empty if unknown
-  double spread = 0;                       ///< Estimate::spread
-  std::size_t groups = 1;                  ///< Estimate::groups
-  std::vector<std::size_t> looks = {};     ///< numbers of seeds at the planned interim analyses
-  std::size_t look = 0;                    ///< number of seeds at the last look; 0: no look yet
+  std::size_t censored = 0;                     ///< runs that ended before the event
+  std::optional<std::size_t> runs_needed = {};  ///< for an undecided claim; empty if unknown
+  std::vector<std::size_t> looks = {};  ///< numbers of seeds at the planned interim analyses
+  std::size_t look = 0;                 ///< number of seeds at the last look; 0: no look yet
   /// Probability that a repetition of this study decides the claim no later than at the next look
   /// of this study, if `estimate` is the true value. Empty if the claim is decided, or if only one
   /// look is planned.
   std::optional<double> power = {};
-  std::string note;      ///< how the runs were compared, and which runs are missing
-  bool primary = false;  ///< the manifest lists the claim under `primary`
-  Table entered = {};    ///< rows with the numbers that the verdict uses
+  std::string note = {};  ///< how the runs were compared, and which runs are missing
+  bool primary = false;   ///< the manifest lists the claim under `primary`
+  Table entered = {};     ///< rows with the numbers that the verdict uses
 };
 
 /// Returns `agrees` (for Relation::same) or `supported` if the whole interval lies inside the range

@@ -45,9 +45,9 @@ void print_verdicts(const ComputedFigure& result) {
   if (result.verdicts.empty()) return;
   print_text("  verdict: {}\n", headline_of(rulings_of(result.verdicts)));
   for (const Verdict& verdict : result.verdicts) {
-    const bool named = verdict.id.empty() || verdict.claim.starts_with(verdict.id);
+    const bool named = verdict.id.empty() || verdict.text.starts_with(verdict.id);
     print_text("    {}: {}{}\n      {}\n", name_of(verdict.ruling), named ? "" : verdict.id + ": ",
-               verdict.claim, result_of(verdict));
+               verdict.text, result_of(verdict));
   }
 }
 

@@ -166,7 +166,7 @@ void mark_primary(const std::vector<RegisteredManifest>& manifests, const RunSel
         for (Verdict& verdict : figure.verdicts) {
           const std::string claim = without_value(verdict.id);
           const bool is_it =
-              primary.id == verdict.id || primary.id == verdict.claim || primary.id == claim;
+              primary.id == verdict.id || primary.id == verdict.text || primary.id == claim;
           verdict.primary |= is_it;
           named |= is_it;
           same_claim |= without_value(primary.id) == claim;

@@ -215,7 +215,7 @@ json figure_json(const WantedFigure& wanted, const ComputedFigure& figure, Conte
   }
   for (const Verdict& verdict : figure.verdicts) {
     claims.push_back({{"ruling", ruling_json(verdict.ruling)},
-                      {"claim", verdict.claim},
+                      {"claim", verdict.text},
                       {"result", result_of(verdict)}});
   }
   for (const auto* list : {&figure.damage, &figure.pruned}) {

@@ -432,7 +432,7 @@ TEST(OwnPlot, OfTheOnsetOfEachRunWithAClaim) {
                   .between = {{{{"drag_kg_per_s", 0.002}}, {{"drag_kg_per_s", 0.001}}}},
                   .margin = 0.001};
   const Verdict phi = claim_figure(claim).make(runs).verdicts.at(0);
-  EXPECT_NEAR(phi.estimate.value(), 0.02, 1e-8) << "a run ends far before its onset";
+  EXPECT_NEAR(phi.estimate.value().value, 0.02, 1e-8) << "a run ends far before its onset";
   EXPECT_EQ(phi.censored, 1U);
   EXPECT_TRUE(has(to_csv(entered_table({{phi}})), ",ends before,0.63"));
   EXPECT_EQ(phi.ruling, Ruling::differs);
@@ -476,12 +476,12 @@ TEST(OwnClaim, IsDecidedLikeThoseOfTheSupplement) {
   const auto verdict = [&] { return claim_figure(claim).make(two_parameters()).verdicts.at(0); };
   claim.between = {soft, hard};
   EXPECT_EQ(verdict().ruling, Ruling::differs) << "they are 3 apart";
-  EXPECT_NEAR(verdict().estimate.value(), -3, 1e-9);
+  EXPECT_NEAR(verdict().estimate.value().value, -3, 1e-9);
   claim.between = {hard, soft};
   claim.is = Relation::higher;
   EXPECT_EQ(verdict().ruling, Ruling::supported);
   EXPECT_EQ(verdict().entered.rows.size(), 2 * verdict().runs) << "each run of both sides";
-  EXPECT_EQ(verdict().claim,
+  EXPECT_EQ(verdict().text,
             "own: phi, mean over cycles 1 to 2 is higher by more than 0.5 for fluid=still, b=0.004 "
             "kg/s than for fluid=still, b=0.001 kg/s")
       << "names for people";

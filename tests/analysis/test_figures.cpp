@@ -172,13 +172,13 @@ TEST(FigureC, TwoRunsOfOnePackingAreOne) {
 }
 
 Verdict verdict_of(const FigureResult& made, const std::string& claim) {
-  return *std::ranges::find(made.verdicts, claim, &Verdict::claim);
+  return *std::ranges::find(made.verdicts, claim, &Verdict::text);
 }
 
 /// What the interval and the margin say of a claim that states why it cannot be decided.
 Ruling ruling_by_numbers(const Verdict& verdict, Relation claimed) {
   EXPECT_EQ(verdict.ruling, Ruling::undecidable);
-  return ruling_of(verdict.interval, verdict.margin, claimed);
+  return ruling_of(verdict.estimate.value().interval, verdict.margin, claimed);
 }
 
 // Anyone can compute the size again from what entered the verdict.
@@ -194,7 +194,8 @@ TEST(FigureC, ComparesAmplitudesAtEqualNumbersOfCycles) {
     EXPECT_EQ(ruling_by_numbers(found, Relation::higher),
               grows ? Ruling::supported : Ruling::refuted)
         << numbers_of(found);
-    EXPECT_NEAR(found.estimate.value(), grows ? 9.0 / 4 - 1 : 4.0 / 9 - 1, grows ? 0.7 : 0.15);
+    EXPECT_NEAR(found.estimate.value().value, grows ? 9.0 / 4 - 1 : 4.0 / 9 - 1,
+                grows ? 0.7 : 0.15);
     std::map<std::string, GrowthBySize> entered;
     for (const TableRow& row : found.entered.rows) {
       EXPECT_EQ(row.at(3), TableCell(std::int64_t{5}));
@@ -312,13 +313,13 @@ TEST(SpreadOfVariants, IsTheStandardDeviationOfTheirTrueMeans) {
     }
     return claim_figure(claim).make(runs).verdicts.at(0);
   };
-  EXPECT_NEAR(verdict(1).estimate.value(), 1, 0.4) << verdict(1).note;
-  EXPECT_GT(verdict(1).interval.high, 1);
+  EXPECT_NEAR(verdict(1).estimate.value().value, 1, 0.4) << verdict(1).note;
+  EXPECT_GT(verdict(1).estimate.value().interval.high, 1);
   EXPECT_EQ(verdict(1).ruling, Ruling::undecided) << "0 is in the interval, 0.1 too";
   claim.margin = 2;
   EXPECT_EQ(verdict(1).ruling, Ruling::agrees);
   EXPECT_EQ(verdict(0).ruling, Ruling::agrees) << verdict(0).note;
-  EXPECT_LT(verdict(0).estimate.value(), 0.7);
+  EXPECT_LT(verdict(0).estimate.value().value, 0.7);
 }
 
 // Runs without a number could hide a spread: a verdict needs three quarters of each variant.

@@ -138,13 +138,14 @@ TEST(FigureS7, CountsRunsOfOnePackingTogether) {
   const Verdict once = s7(runs).verdicts[1];
   const Verdict shared = s7(with_copies(runs, 0.1, true)).verdicts[1];
   EXPECT_EQ(shared.estimate, once.estimate);
-  EXPECT_EQ(shared.interval.low, once.interval.low);
-  EXPECT_EQ(shared.interval.high, once.interval.high);
+  EXPECT_EQ(shared.estimate.value().interval.low, once.estimate.value().interval.low);
+  EXPECT_EQ(shared.estimate.value().interval.high, once.estimate.value().interval.high);
   EXPECT_EQ(shared.runs, 6U);
   EXPECT_TRUE(has(shared.note, "120 nuclei of 15 to 25 grains in 12 of 12 runs; 6 packings"));
   const Verdict apart = s7(with_copies(runs, 0.1, false)).verdicts[1];
   EXPECT_EQ(apart.runs, 12U);
-  EXPECT_LT(apart.interval.high - apart.interval.low, once.interval.high - once.interval.low);
+  EXPECT_LT(apart.estimate.value().interval.high - apart.estimate.value().interval.low,
+            once.estimate.value().interval.high - once.estimate.value().interval.low);
 }
 
 /// Of `grains` interior grains, at one phi, with an onset just before cycle `onset` (0: none).
@@ -339,7 +340,7 @@ TEST(FigureNucleation, DrawsEachSizeAndDecidesByTheExponent) {
   EXPECT_TRUE(has(to_csv(result.tables[0]), "A=0.0833 N=1000,"));
   ASSERT_EQ(result.verdicts.size(), 1U);
   ASSERT_TRUE(result.verdicts[0].estimate);
-  EXPECT_NEAR(*result.verdicts[0].estimate, 0, 0.15);
+  EXPECT_NEAR(result.verdicts[0].estimate->value, 0, 0.15);
   EXPECT_NEAR(result.verdicts[0].margin, 1.0 / 6, 1e-12) << "all grains are interior ones here";
   EXPECT_TRUE(find_figure("nucleation")->make(std::vector{runs.front()}).verdicts.empty());
   const auto set_interior_of_small = [&](double interior) {
@@ -376,7 +377,7 @@ TEST(FigureNucleationCore, UsesTheGrainsAndThePhiOfTheCore) {
   ASSERT_EQ(result.tables[0].rows.size(), 2U);
   EXPECT_TRUE(has(to_csv(result.tables[0]), "A=0.0833 N=1000,0.0833,1000,0.644,0.646,30,"));
   ASSERT_EQ(result.verdicts.size(), 1U);
-  EXPECT_NEAR(result.verdicts[0].estimate.value(), 0, 0.1);
+  EXPECT_NEAR(result.verdicts[0].estimate.value().value, 0, 0.1);
   EXPECT_NEAR(result.verdicts[0].margin, 0.5 - std::log(3.0) / std::log(9.0) / 3, 1e-12);
 }
 

@@ -373,31 +373,31 @@ TEST(OwnClaim, ComparesWithAPublishedNumber) {
       .margin = 0.01};
   const auto verdict = [&] { return claim_figure(claim).make(runs_of_sweep()).verdicts.at(0); };
   EXPECT_EQ(verdict().ruling, Ruling::agrees);
-  EXPECT_NEAR(verdict().estimate.value(), 0.002, 1e-9);
-  EXPECT_EQ(verdict().claim,
+  EXPECT_NEAR(verdict().estimate.value().value, 0.002, 1e-9);
+  EXPECT_EQ(verdict().text,
             "own: 1000*phi at cycle 2 is as published, 22 ± 0.1 (S C), for A=0.02 rad, T=2 s");
   claim.published->value = 23;
   EXPECT_EQ(verdict().ruling, Ruling::differs);
   claim.relative = true;
   claim.margin = 0.1;
   EXPECT_EQ(verdict().ruling, Ruling::agrees) << "within 10 %";
-  EXPECT_NEAR(verdict().estimate.value(), 22.002 / 23 - 1, 1e-9);
+  EXPECT_NEAR(verdict().estimate.value().value, 22.002 / 23 - 1, 1e-9);
   claim.is = Relation::lower;
   EXPECT_EQ(verdict().ruling, Ruling::refuted);
-  EXPECT_TRUE(verdict().claim.starts_with(
+  EXPECT_TRUE(verdict().text.starts_with(
       "own: 1000*phi at cycle 2 is lower by more than 10 % than published, 23 ± 0.1 (S C), for "));
   claim.margin = 0.07;
-  EXPECT_TRUE(verdict().claim.starts_with("own: 1000*phi at cycle 2 is lower by more than 7 % "))
-      << verdict().claim;
+  EXPECT_TRUE(verdict().text.starts_with("own: 1000*phi at cycle 2 is lower by more than 7 % "))
+      << verdict().text;
   claim.margin = 0.01;
   EXPECT_EQ(verdict().ruling, Ruling::supported);
   claim.is = Relation::higher;
   claim.compare = "-1000*phi";
   claim.published->value = -23;
   EXPECT_EQ(verdict().ruling, Ruling::supported) << "-22 is higher than -23";
-  EXPECT_NEAR(verdict().estimate.value(), 1 - 22.002 / 23, 1e-9);
+  EXPECT_NEAR(verdict().estimate.value().value, 1 - 22.002 / 23, 1e-9);
   claim.statement = "B.9: they are equal";
-  EXPECT_EQ(verdict().claim, "B.9: they are equal");
+  EXPECT_EQ(verdict().text, "B.9: they are equal");
   claim.between[0] = nlohmann::json::object();
   const std::string refusal = message_of<UsageError>([&] { verdict(); });
   EXPECT_TRUE(has(refusal, "claim own: there are 6 variants; `of` must select one variant. Add "))
@@ -650,7 +650,7 @@ TEST(OwnClaim, ComparesMeansOverAWindowOfPhi) {
   ClaimSpec claim = kOfFluids;
   claim.phi = {{0.64, 0.65}};
   const Verdict verdict = verdict_of(claim);
-  EXPECT_NEAR(verdict.estimate.value(), -20, 1e-9) << "20 cycles later, a point a cycle";
+  EXPECT_NEAR(verdict.estimate.value().value, -20, 1e-9) << "20 cycles later, a point a cycle";
   EXPECT_EQ(verdict.quantity,
             "difference in percentage crystalline, mean over phi from 0.64 to 0.65");
   claim.phi = {{0.64, 0.70}};
@@ -664,7 +664,7 @@ TEST(OwnClaim, ComparesTheCyclesAtWhichALevelIsReached) {
   claim.margin = 0.1;
   const Verdict verdict = verdict_of(claim);
   EXPECT_EQ(verdict.ruling, Ruling::supported);
-  EXPECT_EQ(verdict.claim,
+  EXPECT_EQ(verdict.text,
             "own: the cycle of crystalline_percent >= 5 is later by more than a factor of 1.07 for "
             "fluid=cell than for fluid=still");
   EXPECT_TRUE(has(verdict.note, "first: median cycle 37.5 (0 of 4 runs end before the event)"))
@@ -687,9 +687,9 @@ TEST(OwnClaim, WithoutAMarginTakesThePublishedNumberAsABound) {
   claim.margin = 0;
   claim.is = Relation::lower;
   EXPECT_EQ(verdict_of(claim).ruling, Ruling::supported);
-  EXPECT_NEAR(verdict_of(claim).estimate.value(), 0.6, 1e-12);
+  EXPECT_NEAR(verdict_of(claim).estimate.value().value, 0.6, 1e-12);
   EXPECT_EQ(verdict_of(claim).margin, 0.61);
-  EXPECT_EQ(verdict_of(claim).claim,
+  EXPECT_EQ(verdict_of(claim).text,
             "own: phi at cycle 0 is lower than published, 0.61 (S C), for fluid=cell");
   claim.is = Relation::higher;
   EXPECT_EQ(verdict_of(claim).ruling, Ruling::refuted);
@@ -701,13 +701,13 @@ TEST(OwnClaim, OfOneSideSaysWhatItComparesWith) {
   claim.cycles = {{2, 2}};
   claim.estimator = "spread_of_variants";
   const Verdict alone = verdict_of(claim);
-  EXPECT_EQ(alone.claim,
+  EXPECT_EQ(alone.text,
             "own: standard deviation between variants of phi at cycle 2 is within 1 of 0, for "
             "fluid=cell");
   EXPECT_TRUE(has(alone.note, "at least two variants")) << alone.note;
   claim.between[0] = nlohmann::json::object();
   claim.is = Relation::higher;
-  EXPECT_TRUE(verdict_of(claim).claim.ends_with(" is higher by more than 1 than 0"));
+  EXPECT_TRUE(verdict_of(claim).text.ends_with(" is higher by more than 1 than 0"));
   EXPECT_FALSE(has(verdict_of(claim).note, "at least two variants"));
 }
 

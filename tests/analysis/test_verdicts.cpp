@@ -95,11 +95,9 @@ TEST(Verdict, WordsHaveNoInfinities) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   Verdict verdict;
   verdict.margin = 1;
-  verdict.estimate = infinity;
-  verdict.interval = {-infinity, infinity};
+  verdict.estimate = Estimate{infinity, {-infinity, infinity}};
   EXPECT_EQ(numbers_of(verdict), "no finite value, 90 % interval unbounded, margin 1, 0 runs");
-  verdict.estimate = 2;
-  verdict.interval = {1.5, infinity};
+  verdict.estimate = Estimate{2, {1.5, infinity}};
   verdict.runs_needed = 9;
   EXPECT_EQ(numbers_of(verdict), "2, 90 % interval 1.5 to unbounded, margin 1, 0 runs (9 needed)");
 }
@@ -115,8 +113,7 @@ TEST(Verdict, WaitsAreComparedInWords) {
   EXPECT_EQ(result_of(verdict),
             "cycle of the onset (log-rank test): not measured, margin: twice, 6 runs per variant");
   const auto words = [&](double estimate, double low, double high) {
-    verdict.estimate = estimate;
-    verdict.interval = {low, high};
+    verdict.estimate = Estimate{estimate, {low, high}};
     const std::string numbers = numbers_of(verdict);
     return numbers.substr(0, numbers.find(", margin"));
   };
@@ -198,7 +195,7 @@ std::vector<FrameRun> two_groups(const std::string& key, const nlohmann::json& a
 Rulings rulings(const char* figure, std::span<const FrameRun> runs) {
   Rulings found;
   for (const Verdict& v : find_figure(figure)->make(runs).verdicts) {
-    std::printf("%s: %s: %s; %s: %s; %s\n", figure, name_of(v.ruling).data(), v.claim.c_str(),
+    std::printf("%s: %s: %s; %s: %s; %s\n", figure, name_of(v.ruling).data(), v.text.c_str(),
                 v.quantity.c_str(), numbers_of(v).c_str(), v.note.c_str());
     found.push_back(v.ruling);
   }
@@ -502,8 +499,8 @@ TEST(FigureS5, TheSlopeOfTheOnsetIsTakenAgainstLnOfTheInteriorGrains) {
     return *std::ranges::find(verdicts, "S5b.slope", &Verdict::id);
   };
   Verdict found = verdict(-0.0017);
-  EXPECT_EQ(found.claim, "C: phi at the onset does not depend on the size of the cell");
-  EXPECT_NEAR(found.estimate.value(), -0.0017, 0.0003);
+  EXPECT_EQ(found.text, "C: phi at the onset does not depend on the size of the cell");
+  EXPECT_NEAR(found.estimate.value().value, -0.0017, 0.0003);
   EXPECT_EQ(found.ruling, differs);
   EXPECT_EQ(found.runs, 15U);
   EXPECT_EQ(found.entered.rows.size(), 15U);
