@@ -37,11 +37,6 @@ Simulation::Simulation(Cell cell, const Scene& scene, const State& state,
                                 "grain could touch two images of one neighbour, or an image of "
                                 "itself. Use a deeper cell");
   }
-  load(state);
-  set_constants();
-}
-
-void Simulation::load(const State& state) {
   const auto grains = static_cast<std::size_t>(state.position.cols());
   const std::size_t room = padded(grains);
   id_.resize(grains);
@@ -56,6 +51,7 @@ void Simulation::load(const State& state) {
     rows[4 * room] = -1e30;
   }
   copy_in(state);
+  set_constants();
 }
 
 void Simulation::copy_in(const State& state) {
@@ -63,11 +59,9 @@ void Simulation::copy_in(const State& state) {
   wall_height_ = state.wall_height;
   wall_velocity_ = state.wall_velocity;
   for (std::size_t g = 0; g < id_.size(); ++g) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const auto a = static_cast<Eigen::Index>(axis);
-      rows_[0][4 * g + axis] = state.position(a, id_[g]);
-      velocity_[axis][g] = state.velocity(a, id_[g]);
-    }
+    Eigen::Map<Eigen::Vector3d>(rows_[0].data() + 4 * g) = state.position.col(id_[g]);
+    const double* v = state.velocity.col(id_[g]).data();
+    for (std::size_t axis = 0; axis < 3; ++axis) velocity_[axis][g] = v[axis];
   }
 }
 
@@ -169,10 +163,9 @@ const Forces& Simulation::forces() {
   was_set_ = false;
   forces_.on_grain.resize(3, static_cast<Eigen::Index>(id_.size()));
   for (std::size_t g = 0; g < id_.size(); ++g) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      forces_.on_grain(static_cast<Eigen::Index>(axis), id_[g]) =
-          scene_.stiffness * sum_[axis][g] - (axis == 1 ? scene_.gravity : 0.0);
-    }
+    const Eigen::Vector3d sum(sum_[0][g], sum_[1][g], sum_[2][g]);
+    forces_.on_grain.col(id_[g]) = scene_.stiffness * sum;
+    forces_.on_grain(1, id_[g]) -= scene_.gravity;
   }
   forces_.on_wall = force_on_wall();
   return forces_;
@@ -372,11 +365,8 @@ State Simulation::state() const {
   state.position.resize(3, grains);
   state.velocity.resize(3, grains);
   for (std::size_t g = 0; g < id_.size(); ++g) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const auto a = static_cast<Eigen::Index>(axis);
-      state.position(a, id_[g]) = rows_[0][4 * g + axis];
-      state.velocity(a, id_[g]) = velocity_[axis][g];
-    }
+    state.position.col(id_[g]) = Eigen::Map<const Eigen::Vector3d>(rows_[0].data() + 4 * g);
+    state.velocity.col(id_[g]) << velocity_[0][g], velocity_[1][g], velocity_[2][g];
   }
   return state;
 }

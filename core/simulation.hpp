@@ -47,7 +47,8 @@ struct Forces {
   double on_wall = 0;         ///< upward force on the moving wall from load and contacts
 };
 
-/// Upper bound of the overlap limit of a run [d].
+/// Upper bound of the overlap limit of a run [d]. Simulations that begin with a recorded state use
+/// this limit, because the run that recorded the state checked the overlaps against its own limit.
 inline constexpr double kLargestOverlapLimit = 0.5;
 
 class Simulation {
@@ -96,7 +97,6 @@ class Simulation {
   void set_overlap_limit(double limit) { settings_.limits.overlap = limit; }
 
  private:
-  void load(const State& state);
   void copy_in(const State& state);
   void set_constants();
   void rebuild_lists(const Drive& drive);

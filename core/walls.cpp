@@ -21,8 +21,7 @@ std::array<WallPlane, 4> Walls::planes(const WallPose& pose) const {
 
 void Walls::place_all(const WallPose& pose, double margin, double* rows) const {
   for (const WallGrain& grain : cell_.wall_grains) {
-    const Eigen::Vector3d p = wall_grain_position(cell_, pose, grain);
-    for (Eigen::Index axis = 0; axis < 3; ++axis) rows[axis] = p(axis);
+    Eigen::Map<Eigen::Vector3d>{rows} = wall_grain_position(cell_, pose, grain);
     rows[3] = margin;
     rows += 4;
   }

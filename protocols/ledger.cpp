@@ -105,8 +105,6 @@ Ledger ledger(const Cell& cell, const Scene& scene, const Drive& drive, const St
     return wall_pose(cell, tilt(drive, state.step).theta, state.wall_height);
   };
   Simulation simulation(cell, scene, start);
-  // The run that recorded `start` checked the overlaps against its own limit. The check here uses
-  // the least strict limit.
   simulation.set_overlap_limit(kLargestOverlapLimit);
   simulation.advance(drive, 1);
   Ledger sum;

@@ -11,8 +11,6 @@ State rested(const Cell& cell, const Scene& scene, State state, double seconds) 
   const Drive pause{.amplitude = 0, .steps_per_cycle = 1, .pause_steps = steps};
   state.step = 1;
   Simulation simulation(cell, scene, state);
-  // The run that recorded `state` checked the overlaps against its own limit. The check here uses
-  // the least strict limit.
   simulation.set_overlap_limit(kLargestOverlapLimit);
   simulation.advance(pause, steps);
   state = simulation.state();
