@@ -172,7 +172,6 @@ std::vector<Provider> lattice_providers() {
                  "percentage of interior grains that are BCC, by common neighbour analysis"}},
            .compute = compute},
           {.name = "grain_lattices",
-           .parameters = nlohmann::json::object(),
            .measures = {of_grains(
                "lattice", "1", "by common neighbours: 0 = none, 1 = FCC, 2 = HCP, 3 = BCC",
                "lattice by common neighbours",

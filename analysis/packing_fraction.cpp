@@ -50,10 +50,10 @@ std::vector<double> distances_from_walls(const Cell& cell, const WallPose& pose,
 }
 
 std::vector<std::uint8_t> interior_grains(const Cell& cell, const WallPose& pose,
-                                          const Eigen::Matrix3Xd& grains) {
+                                          const Eigen::Matrix3Xd& grains, double least) {
   std::vector<std::uint8_t> interior;
   for (const double distance : distances_from_walls(cell, pose, grains)) {
-    interior.push_back(distance >= interior_distance ? 1 : 0);
+    interior.push_back(distance >= least ? 1 : 0);
   }
   return interior;
 }

@@ -45,9 +45,10 @@ Overlaps overlaps(const Cell& cell, const WallPose& pose, const Eigen::Matrix3Xd
 std::vector<double> distances_from_walls(const Cell& cell, const WallPose& pose,
                                          const Eigen::Matrix3Xd& grains);
 
-/// 1 for grains at least `interior_distance` from the wall surfaces, else 0.
+/// 1 for grains at least `least` [d] from the wall surfaces, else 0.
 std::vector<std::uint8_t> interior_grains(const Cell& cell, const WallPose& pose,
-                                          const Eigen::Matrix3Xd& grains);
+                                          const Eigen::Matrix3Xd& grains,
+                                          double least = interior_distance);
 
 /// The region in which the centres of interior grains lie. The borders of the region are parallel
 /// to the walls; in z it is periodic.

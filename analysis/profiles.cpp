@@ -65,16 +65,12 @@ json profiles_of(const MeasureInput& input) {
           {"crystalline_profile_percent", crystalline}};
 }
 
-std::vector<double> distances_from_walls(const MeasureInput& input) {
-  const Checkpoint& c = *input.checkpoint;
-  return distances_from_walls(c.cell, pose_of(c), c.state.position);
-}
-
 /// phi in layers of half a diameter, by distance from the walls; NaN for a layer without grains.
 json wall_distance_of(const MeasureInput& input) {
   constexpr double layer = 0.5;
   const GrainMeasures& grains = input.analysis->grains;
-  const std::vector<double> distance = distances_from_walls(input);
+  const Checkpoint& c = *input.checkpoint;
+  const std::vector<double> distance = distances_from_walls(c.cell, pose_of(c), c.state.position);
   const double farthest = distance.empty() ? 0 : std::ranges::max(distance);
   MeasuredCurve phi;
   for (double low = 0; low <= farthest; low += layer) {
@@ -89,8 +85,8 @@ json wall_distance_of(const MeasureInput& input) {
 /// Number and phi of the core grains; phi is NaN without core grains.
 json core_of(const MeasureInput& input) {
   const GrainMeasures& grains = input.analysis->grains;
-  std::vector<std::uint8_t> core;
-  for (const double d : distances_from_walls(input)) core.push_back(d >= core_distance ? 1 : 0);
+  const Checkpoint& c = *input.checkpoint;
+  const auto core = interior_grains(c.cell, pose_of(c), c.state.position, core_distance);
   return {{"core_grains", static_cast<double>(std::ranges::count(core, 1))},
           {"core_phi", packing_fractions(grains.largest_overlap, grains.cell_volume, core).phi}};
 }
