@@ -15,6 +15,13 @@ double critical_size_for(const FrameRun& run) {
   return published_nearest(number_of(run, "amplitude_rad")).critical_size;
 }
 
+template <OnsetMethod kMethod, double RunOnset::*kValue>
+RunValue at_onset(const FrameRun& run) {
+  const RunOnset onset = kMethod(run);
+  if (onset.missing == Missing::too_short) return {0, Missing::too_short, onset.*kValue};
+  return onset.missing == Missing::nothing ? measured(onset.*kValue) : RunValue{0, onset.missing};
+}
+
 }  // namespace
 
 RunOnset onset_by_size(const FrameRun& run) {
@@ -71,17 +78,6 @@ RunOnset onset_by_slope(const FrameRun& run) {
   }
   return found;
 }
-
-namespace {
-
-template <OnsetMethod kMethod, double RunOnset::*kValue>
-RunValue at_onset(const FrameRun& run) {
-  const RunOnset onset = kMethod(run);
-  if (onset.missing == Missing::too_short) return {0, Missing::too_short, onset.*kValue};
-  return onset.missing == Missing::nothing ? measured(onset.*kValue) : RunValue{0, onset.missing};
-}
-
-}  // namespace
 
 std::vector<Provider> onset_providers() {
   const auto of_run = [](const char* name, const char* meaning, auto* value, const char* words,
