@@ -24,12 +24,6 @@
 
 namespace shearcell {
 
-/// Value of one run. If `censored`, the true value is larger than `value`.
-struct CensoredValue {
-  double value = 0;
-  bool censored = false;
-};
-
 /// Mean of the values. If a value is censored, the interval is the union of two intervals: one
 /// for a normal distribution and one for a Gumbel distribution of smallest values. The Gumbel
 /// distribution is included because phi at the onset is skewed: the hazard of an onset rises with

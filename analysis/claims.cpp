@@ -48,8 +48,8 @@ void note_early_onsets(const ClaimSpec& claim, std::initializer_list<RunGroup> g
   for (const RunGroup group : groups) {
     all += group.size();
     early += static_cast<std::size_t>(
-        std::ranges::count_if(waits_for_onset(group), [&](const Waiting& wait) {
-          return wait.observed && wait.cycle < static_cast<double>(last);
+        std::ranges::count_if(waits_for_onset(group), [&](const CensoredValue& wait) {
+          return !wait.censored && wait.value < static_cast<double>(last);
         }));
   }
   if (early == 0) return;
@@ -63,46 +63,29 @@ std::string published_in_words(const PublishedSpec& published) {
                      published.source);
 }
 
-}  // namespace
-
-bool has_one_side(const ClaimSpec& claim) {
-  return claim.published || estimator_of(claim).one_side;
-}
-
-std::string figure_of(const ClaimSpec& claim) {
-  return claim.figure.empty() ? claim.id.substr(0, claim.id.find('.')) : claim.figure;
-}
-
-Claim stated(const ClaimSpec& claim, const std::array<std::string, 2>& sides) {
-  const bool waits = compares_waits(claim);
-  const std::string name = words_of(claim);
-  const bool same = claim.is == Relation::same, higher = claim.is == Relation::higher;
-  std::string how = same ? "the same" : std::string(name_of(claim.is));
-  if (waits && !same) how = higher ? "later" : "earlier";
-  if (!same && claim.margin > 0) {
-    how += " by more than " + (waits ? fmt::format("a factor of {:.3g}", std::exp2(claim.margin))
-                               : claim.relative ? fmt::format("{:.6g} %", 100 * claim.margin)
-                                                : fmt::format("{}", claim.margin));
+/// What to add to a side that selects several variants: "Add `pressure_Pa: 300` or another value."
+std::string remedy_for(RunGroup side) {
+  std::vector<std::string> values;
+  for (const std::string& key : varied_keys(swept_of(side))) {
+    values.push_back(fmt::format("{}: {}", key, value_text(parameter_of(*side.front(), key))));
   }
-  std::string text = claim.statement;
-  if (text.empty() && has_one_side(claim)) {
-    const std::string as = claim.published ? "as " : fmt::format("within {} of ", claim.margin);
-    text = fmt::format("{}: {} is {}{}{}", claim.id, name, same ? as : how + " than ",
-                       claim.published ? "published, " + published_in_words(*claim.published)
-                                       : std::string(estimator_of(claim).reference),
-                       sides[0].empty() ? "" : ", for " + sides[0]);
-  } else if (text.empty()) {
-    text = fmt::format("{}: {} is {} for {} {} {}", claim.id, name, how, sides[0],
-                       same ? "and" : "than for", sides[1]);
-  }
-  return {.text = text,
-          .margin = claim.is == Relation::lower ? -claim.margin : claim.margin,
-          .claimed = claim.is,
-          .id = claim.id,
-          .cannot_be_decided = claim.cannot_be_decided};
+  return values.empty() ? "" : fmt::format(" Add `{}` or other values.", fmt::join(values, ", "));
 }
 
-namespace {
+/// The combinations of swept values among the runs of side `k`. The keys that select side `k` are
+/// left out. A claim may average over the variants of each side if both sides have the same
+/// combinations.
+std::set<nlohmann::json> others_of(const ClaimSpec& claim, const ClaimSides& sides, std::size_t k) {
+  std::set<nlohmann::json> others;
+  for (const FrameRun* run : sides.runs.at(k)) {
+    nlohmann::json swept = run->place.swept;
+    for (const auto& [key, value] : claim.between.at(k).items()) {
+      if (swept.is_object()) swept.erase(key);  // false only in a damaged store
+    }
+    others.insert(std::move(swept));
+  }
+  return others;
+}
 
 /// The verdict on the claim from the runs of its sides; `b` is empty if the claim has one side.
 Verdict decided_by(const ClaimSpec& claim, const Claim& stated, RunGroup a, RunGroup b) {
@@ -248,6 +231,43 @@ std::optional<Verdict> decide_one(const ClaimSpec& claim, const Frame& frame) {
 
 }  // namespace
 
+bool has_one_side(const ClaimSpec& claim) {
+  return claim.published || estimator_of(claim).one_side;
+}
+
+std::string figure_of(const ClaimSpec& claim) {
+  return claim.figure.empty() ? claim.id.substr(0, claim.id.find('.')) : claim.figure;
+}
+
+Claim stated(const ClaimSpec& claim, const std::array<std::string, 2>& sides) {
+  const bool waits = compares_waits(claim);
+  const std::string name = words_of(claim);
+  const bool same = claim.is == Relation::same, higher = claim.is == Relation::higher;
+  std::string how = same ? "the same" : std::string(name_of(claim.is));
+  if (waits && !same) how = higher ? "later" : "earlier";
+  if (!same && claim.margin > 0) {
+    how += " by more than " + (waits ? fmt::format("a factor of {:.3g}", std::exp2(claim.margin))
+                               : claim.relative ? fmt::format("{:.6g} %", 100 * claim.margin)
+                                                : fmt::format("{}", claim.margin));
+  }
+  std::string text = claim.statement;
+  if (text.empty() && has_one_side(claim)) {
+    const std::string as = claim.published ? "as " : fmt::format("within {} of ", claim.margin);
+    text = fmt::format("{}: {} is {}{}{}", claim.id, name, same ? as : how + " than ",
+                       claim.published ? "published, " + published_in_words(*claim.published)
+                                       : std::string(estimator_of(claim).reference),
+                       sides[0].empty() ? "" : ", for " + sides[0]);
+  } else if (text.empty()) {
+    text = fmt::format("{}: {} is {} for {} {} {}", claim.id, name, how, sides[0],
+                       same ? "and" : "than for", sides[1]);
+  }
+  return {.text = text,
+          .margin = claim.is == Relation::lower ? -claim.margin : claim.margin,
+          .claimed = claim.is,
+          .id = claim.id,
+          .cannot_be_decided = claim.cannot_be_decided};
+}
+
 ClaimSides sides_of(const ClaimSpec& claim, std::span<const FrameRun> runs) {
   ClaimSides sides;
   for (std::size_t k = 0; k < (has_one_side(claim) ? 1U : 2U); ++k) {
@@ -260,34 +280,6 @@ ClaimSides sides_of(const ClaimSpec& claim, std::span<const FrameRun> runs) {
   }
   return sides;
 }
-
-namespace {
-
-/// What to add to a side that selects several variants: "Add `pressure_Pa: 300` or another value."
-std::string remedy_for(RunGroup side) {
-  std::vector<std::string> values;
-  for (const std::string& key : varied_keys(swept_of(side))) {
-    values.push_back(fmt::format("{}: {}", key, value_text(parameter_of(*side.front(), key))));
-  }
-  return values.empty() ? "" : fmt::format(" Add `{}` or other values.", fmt::join(values, ", "));
-}
-
-/// The combinations of swept values among the runs of side `k`. The keys that select side `k` are
-/// left out. A claim may average over the variants of each side if both sides have the same
-/// combinations.
-std::set<nlohmann::json> others_of(const ClaimSpec& claim, const ClaimSides& sides, std::size_t k) {
-  std::set<nlohmann::json> others;
-  for (const FrameRun* run : sides.runs.at(k)) {
-    nlohmann::json swept = run->place.swept;
-    for (const auto& [key, value] : claim.between.at(k).items()) {
-      if (swept.is_object()) swept.erase(key);  // false only in a damaged store
-    }
-    others.insert(std::move(swept));
-  }
-  return others;
-}
-
-}  // namespace
 
 std::vector<std::string> problems_of_sides(const ClaimSpec& claim, const ClaimSides& sides,
                                            bool planned) {

@@ -77,7 +77,7 @@ Verdict compare_with(const Claim& claim, const Scalar& scalar, RunGroup runs, do
 
 /// Returns for each run the cycle of the onset by method 1 (onset.hpp). A run without an onset is
 /// censored at its last cycle.
-std::vector<Waiting> waits_for_onset(RunGroup runs);
+std::vector<CensoredValue> waits_for_onset(RunGroup runs);
 
 /// Converts a run's value. If the run ended before the event, the result is censored and holds the
 /// lower bound RunValue::above. It holds NaN if neither the value nor the bound is known.

@@ -60,19 +60,19 @@ struct AtRisk {
   double waiting = 0;
   double events = 0;
 };
-AtRisk at(std::span<const Waiting> runs, double cycle) {
+AtRisk at(std::span<const CensoredValue> runs, double cycle) {
   AtRisk found;
-  for (const Waiting& run : runs) {
-    if (run.cycle >= cycle) ++found.waiting;
-    if (run.observed && run.cycle == cycle) ++found.events;
+  for (const CensoredValue& run : runs) {
+    if (run.value >= cycle) ++found.waiting;
+    if (!run.censored && run.value == cycle) ++found.events;
   }
   return found;
 }
 
-std::set<double> event_cycles(std::span<const Waiting> runs) {
+std::set<double> event_cycles(std::span<const CensoredValue> runs) {
   std::set<double> cycles;
-  for (const Waiting& run : runs) {
-    if (run.observed) cycles.insert(run.cycle);
+  for (const CensoredValue& run : runs) {
+    if (!run.censored) cycles.insert(run.value);
   }
   return cycles;
 }
@@ -279,7 +279,7 @@ std::optional<std::size_t> runs_to_resolve(const Estimate& estimate, double dist
   return std::nullopt;
 }
 
-std::vector<SurvivalStep> kaplan_meier(std::span<const Waiting> runs) {
+std::vector<SurvivalStep> kaplan_meier(std::span<const CensoredValue> runs) {
   std::vector<SurvivalStep> steps;
   double survival = 1;
   for (const double cycle : event_cycles(runs)) {
@@ -290,7 +290,7 @@ std::vector<SurvivalStep> kaplan_meier(std::span<const Waiting> runs) {
   return steps;
 }
 
-std::optional<double> median_wait(std::span<const Waiting> runs) {
+std::optional<double> median_wait(std::span<const CensoredValue> runs) {
   constexpr double rounding = 1e-12;
   const std::vector<SurvivalStep> steps = kaplan_meier(runs);
   const auto reached = std::ranges::find_if(
@@ -301,7 +301,7 @@ std::optional<double> median_wait(std::span<const Waiting> runs) {
   return half ? (reached->cycle + next->cycle) / 2 : reached->cycle;
 }
 
-double log_rank(std::span<const Waiting> a, std::span<const Waiting> b) {
+double log_rank(std::span<const CensoredValue> a, std::span<const CensoredValue> b) {
   std::set<double> cycles = event_cycles(a);
   cycles.merge(event_cycles(b));
   double excess = 0;
@@ -320,20 +320,20 @@ double log_rank(std::span<const Waiting> a, std::span<const Waiting> b) {
   return variance > 0 ? excess / std::sqrt(variance) : 0;
 }
 
-std::optional<Estimate> log2_wait_ratio(std::span<const Waiting> a, std::span<const Waiting> b,
-                                        double level) {
+std::optional<Estimate> log2_wait_ratio(std::span<const CensoredValue> a,
+                                        std::span<const CensoredValue> b, double level) {
   if (std::min(a.size(), b.size()) < least_runs) return std::nullopt;
   if (event_cycles(a).empty() && event_cycles(b).empty()) return std::nullopt;
   std::set<double> factors;  // log2 of the ratio of each time in `a` to each time in `b`
-  for (const Waiting& x : a) {
-    for (const Waiting& y : b) {
-      if (x.cycle > 0 && y.cycle > 0) factors.insert(std::log2(x.cycle / y.cycle));
+  for (const CensoredValue& x : a) {
+    for (const CensoredValue& y : b) {
+      if (x.value > 0 && y.value > 0) factors.insert(std::log2(x.value / y.value));
     }
   }
   if (factors.empty()) return std::nullopt;
   const std::vector<double> edges(factors.begin(), factors.end());
   const double limit = student_quantile(upper(level), static_cast<double>(a.size() + b.size() - 2));
-  std::vector<Waiting> scaled(b.begin(), b.end());
+  std::vector<CensoredValue> scaled(b.begin(), b.end());
   double negative = edges.front();  // largest factor at which log_rank() < 0
   double positive = edges.back();   // smallest factor at which log_rank() > 0
   Interval kept{infinite, -infinite};
@@ -342,7 +342,7 @@ std::optional<Estimate> log2_wait_ratio(std::span<const Waiting> a, std::span<co
     const double low = k == 0 ? -infinite : edges[k - 1];
     const double high = k == edges.size() ? infinite : edges[k];
     const double factor = k == 0 ? high - 1 : k == edges.size() ? low + 1 : (low + high) / 2;
-    for (std::size_t j = 0; j < b.size(); ++j) scaled[j].cycle = b[j].cycle * std::exp2(factor);
+    for (std::size_t j = 0; j < b.size(); ++j) scaled[j].value = b[j].value * std::exp2(factor);
     const double z = log_rank(a, scaled);
     if (std::abs(z) < limit) kept = {std::min(kept.low, low), std::max(kept.high, high)};
     if (z < 0 && k < edges.size()) negative = high;

@@ -135,13 +135,14 @@ std::optional<Estimate> relative_difference(const std::optional<Estimate>& a,
 std::optional<std::size_t> runs_to_resolve(const Estimate& estimate, double distance,
                                            bool both_sides);
 
-// Waiting times, such as the cycle of the onset. A run is censored if it stops before its event.
-
-/// One run: the cycle of the event, or the last cycle if no event was observed (censored).
-struct Waiting {
-  double cycle = 0;
-  bool observed = false;
+/// Value of one run. If `censored`, the true value is larger than `value`.
+struct CensoredValue {
+  double value = 0;
+  bool censored = false;
 };
+
+// CensoredValue times, such as the cycle of the onset. A run that stops before its event is
+// censored at its last cycle.
 
 /// Probability of waiting longer than `cycle`, constant until the next step.
 struct SurvivalStep {
@@ -151,16 +152,16 @@ struct SurvivalStep {
 
 /// The product-limit estimate, with a step at each cycle that has an event: E. L. Kaplan and P.
 /// Meier, J. Am. Stat. Assoc. 53, 457 (1958).
-std::vector<SurvivalStep> kaplan_meier(std::span<const Waiting> runs);
+std::vector<SurvivalStep> kaplan_meier(std::span<const CensoredValue> runs);
 
 /// Returns the first cycle after which fewer than half of the runs still wait. If exactly half wait
 /// between two events, returns the mean of their cycles. Empty if more than half wait at the end.
-std::optional<double> median_wait(std::span<const Waiting> runs);
+std::optional<double> median_wait(std::span<const CensoredValue> runs);
 
 /// The log-rank statistic: the number of events of `a`, minus the number expected if both groups
 /// wait equally long, divided by the standard deviation of this difference. Positive if the events
 /// of `a` come earlier; 0 if there are no events. N. Mantel, Cancer Chemother. Rep. 50, 163 (1966).
-double log_rank(std::span<const Waiting> a, std::span<const Waiting> b);
+double log_rank(std::span<const CensoredValue> a, std::span<const CensoredValue> b);
 
 /// log2 of the ratio of the waiting times in `a` to those in `b`. If those in `b` are multiplied
 /// by this ratio, the log-rank statistic is zero. The interval contains all ratios that the
@@ -169,7 +170,8 @@ double log_rank(std::span<const Waiting> a, std::span<const Waiting> b);
 /// `b`. With the normal distribution and 4 to 12 runs in each group, only 86 to 88 % of the 90 %
 /// intervals would contain the true ratio. The interval is infinite if too few events were
 /// observed. Empty if there is no event, or a group has fewer than least_runs.
-std::optional<Estimate> log2_wait_ratio(std::span<const Waiting> a, std::span<const Waiting> b,
+std::optional<Estimate> log2_wait_ratio(std::span<const CensoredValue> a,
+                                        std::span<const CensoredValue> b,
                                         double level = confidence_level);
 
 }  // namespace shearcell

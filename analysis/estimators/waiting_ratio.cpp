@@ -11,11 +11,11 @@
 namespace shearcell {
 namespace {
 
-std::string wait_in_words(std::span<const Waiting> runs) {
+std::string wait_in_words(std::span<const CensoredValue> runs) {
   const auto median = median_wait(runs);
   return fmt::format("median cycle {} ({} of {} runs end before the event)",
                      median ? fmt::format("{:.3g}", *median) : "unknown",
-                     std::ranges::count(runs, false, &Waiting::observed), runs.size());
+                     std::ranges::count(runs, true, &CensoredValue::censored), runs.size());
 }
 
 /// A text for the event whose waiting times the claim compares: "phi >= 0.64" or "the onset".
@@ -24,24 +24,24 @@ std::string event_of(const ClaimSpec& claim) {
 }
 
 /// The cycle of the event in each run. A run without the event is censored at its last cycle.
-std::vector<Waiting> waits_of(const ClaimSpec& claim, RunGroup runs) {
+std::vector<CensoredValue> waits_of(const ClaimSpec& claim, RunGroup runs) {
   if (!claim.reaches) return waits_for_onset(runs);
   const NumberColumn number(claim.compare);
-  std::vector<Waiting> waits;
+  std::vector<CensoredValue> waits;
   for (const FrameRun* run : runs) {
     if (run->checkpoints.empty()) continue;
     const auto reached = std::ranges::find_if(run->checkpoints, [&](const auto& checkpoint) {
       return number(*run, &checkpoint) >= *claim.reaches;
     });
-    const bool observed = reached != run->checkpoints.end();
-    waits.push_back({observed ? reached->cycle : run->checkpoints.back().cycle, observed});
+    const bool censored = reached == run->checkpoints.end();
+    waits.push_back({censored ? run->checkpoints.back().cycle : reached->cycle, censored});
   }
   return waits;
 }
 
 Verdict decide_waits(const ClaimSpec& claim, const Claim& stated, RunGroup first, RunGroup second) {
   const std::string event = event_of(claim);
-  const std::vector<Waiting> a = waits_of(claim, first), b = waits_of(claim, second);
+  const std::vector<CensoredValue> a = waits_of(claim, first), b = waits_of(claim, second);
   const std::optional<Estimate> estimate = log2_wait_ratio(a, b, stated.level);
   const std::size_t runs = std::min(a.size(), b.size());
   const std::string names[] = {shared_name(first), shared_name(second)};
@@ -60,8 +60,8 @@ Verdict decide_waits(const ClaimSpec& claim, const Claim& stated, RunGroup first
   for (const RunGroup group : {first, second}) {
     for (const FrameRun* run : group) {
       RunValue cycle = {0, Missing::checkpoint};
-      for (const Waiting& wait : waits_of(claim, RunGroup(&run, 1))) {
-        cycle = {wait.cycle, wait.observed ? Missing::nothing : Missing::too_short};
+      for (const CensoredValue& wait : waits_of(claim, RunGroup(&run, 1))) {
+        cycle = {wait.value, wait.censored ? Missing::too_short : Missing::nothing};
       }
       enter(*run, {cycle.value, std::string(name_of(cycle.missing))}, entered);
     }
@@ -85,13 +85,13 @@ std::string words_of_waits(const ClaimSpec& claim) {
 
 }  // namespace
 
-std::vector<Waiting> waits_for_onset(RunGroup runs) {
-  std::vector<Waiting> waits;
+std::vector<CensoredValue> waits_for_onset(RunGroup runs) {
+  std::vector<CensoredValue> waits;
   for (const FrameRun* run : runs) {
     if (run->checkpoints.empty()) continue;
     const RunOnset onset = onset_by_size(*run);
-    const bool observed = onset.missing != Missing::too_short;
-    waits.push_back({observed ? onset.cycle : run->checkpoints.back().cycle, observed});
+    const bool censored = onset.missing == Missing::too_short;
+    waits.push_back({censored ? run->checkpoints.back().cycle : onset.cycle, censored});
   }
   return waits;
 }

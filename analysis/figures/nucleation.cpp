@@ -70,7 +70,7 @@ Table survival_table(const Groups& groups) {
       .columns = {"group", "amplitude_rad", "grains", "cycle", "share_without_onset", "runs"}};
   std::map<Group, Series> series = series_by(groups, Join::line);
   for (const auto& [group, runs] : groups) {
-    const std::vector<Waiting> waits = waits_for_onset(runs);
+    const std::vector<CensoredValue> waits = waits_for_onset(runs);
     double before = 1;
     const auto add = [&, &group = group](double cycle, double share) {
       table.rows.push_back({name_of(group), group.first, group.second, cycle, share, waits.size()});
@@ -82,8 +82,8 @@ Table survival_table(const Groups& groups) {
       add(step.cycle, step.survival);
       before = step.survival;
     }
-    const auto longest = std::ranges::max_element(waits, {}, &Waiting::cycle);
-    if (longest != waits.end()) add(longest->cycle, before);
+    const auto longest = std::ranges::max_element(waits, {}, &CensoredValue::value);
+    if (longest != waits.end()) add(longest->value, before);
   }
   table.chart = {.x = axis_of("cycle"),
                  .y = {.name = "share of runs without an onset", .low = 0, .high = 1},

@@ -54,10 +54,10 @@ Simulated two_groups(double spread) {
 /// log2 of the cycle is normal; runs end at the 0.9 quantile of the earlier group.
 Simulated onset_cycles(double spread) {
   const auto waits = [=](std::uint32_t sample, std::size_t runs, double mean) {
-    std::vector<Waiting> all;
+    std::vector<CensoredValue> all;
     for (const double log_cycle : numbers(sample, runs, mean, spread)) {
       const double end = 1.2816 * spread;
-      all.push_back({std::exp2(std::min(log_cycle, end)), log_cycle <= end});
+      all.push_back({std::exp2(std::min(log_cycle, end)), log_cycle > end});
     }
     return all;
   };

@@ -275,19 +275,19 @@ TEST(RunsToResolve, SolvesTheFormulaOfTheSampleSize) {
   EXPECT_FALSE(runs_to_resolve(one, 1e-3, true).has_value());
 }
 
-std::vector<Waiting> waits(std::initializer_list<double> cycles) {  // negative: censored
-  std::vector<Waiting> runs;
-  for (const double cycle : cycles) runs.push_back({std::abs(cycle), cycle > 0});
+std::vector<CensoredValue> waits(std::initializer_list<double> cycles) {  // negative: censored
+  std::vector<CensoredValue> runs;
+  for (const double cycle : cycles) runs.push_back({std::abs(cycle), cycle <= 0});
   return runs;
 }
 
-const std::vector<Waiting> treated = waits(
+const std::vector<CensoredValue> treated = waits(
     {6, 6, 6, -6, 7, -9, 10, -10, -11, 13, 16, -17, -19, -20, 22, 23, -25, -32, -32, -34, -35});
-const std::vector<Waiting> untreated =
+const std::vector<CensoredValue> untreated =
     waits({1, 1, 2, 2, 3, 4, 4, 5, 5, 8, 8, 8, 8, 11, 11, 12, 12, 15, 17, 22, 23});
 
-std::vector<Waiting> scaled(std::vector<Waiting> runs, double factor) {
-  for (Waiting& run : runs) run.cycle *= factor;
+std::vector<CensoredValue> scaled(std::vector<CensoredValue> runs, double factor) {
+  for (CensoredValue& run : runs) run.value *= factor;
   return runs;
 }
 
@@ -331,10 +331,10 @@ TEST(WaitRatio, IsTheFactorBetweenTheGroups) {
 double coverage(std::size_t runs, double longest) {
   constexpr std::uint32_t samples = 2000;
   const auto sample = [&](std::uint32_t id) {
-    std::vector<Waiting> waits;
+    std::vector<CensoredValue> waits;
     for (const double value : normal_numbers(id, runs)) {
       const double cycle = 20 * std::exp(0.6 * value);
-      waits.push_back({std::min(cycle, longest), cycle <= longest});
+      waits.push_back({std::min(cycle, longest), cycle > longest});
     }
     return waits;
   };
