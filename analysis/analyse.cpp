@@ -5,12 +5,9 @@
 
 #include <algorithm>
 #include <numeric>
-#include <utility>
 
 #include "analysis/error.hpp"
 #include "analysis/measures.hpp"
-#include "analysis/packing_fraction.hpp"
-#include "analysis/voronoi.hpp"
 
 namespace shearcell {
 
@@ -24,55 +21,49 @@ Analysis analyse(const Checkpoint& checkpoint) {
   }
   Analysis analysis;
   GrainMeasures& grains = analysis.grains;
-  VoronoiDiagram diagram = voronoi(cell, pose, positions);
-  grains.cell_volume = std::move(diagram.volume);
-  grains.cell_surface = std::move(diagram.surface);
-  Overlaps contact = overlaps(cell, pose, positions);
-  grains.largest_overlap = std::move(contact.largest);
-  grains.contacts = std::move(contact.contacts);
+  grains.cells = voronoi(cell, pose, positions);
+  grains.overlaps = overlaps(cell, pose, positions);
   grains.interior = interior_grains(cell, pose, positions);
-  const std::size_t count = grains.cell_volume.size();
+  const auto& [largest_overlap, contacts, mean_overlap] = grains.overlaps;
+  const std::vector<double>& volume = grains.cells.volume;
+  const std::size_t count = volume.size();
   for (std::size_t i = 0; i < count; ++i) {
-    grains.phi_local.push_back(
-        local_packing_fraction(grains.largest_overlap[i], grains.cell_volume[i]));
-    grains.q6.push_back(bond_order_q6(diagram.faces_of(i), grains.cell_surface[i]));
+    grains.phi_local.push_back(local_packing_fraction(largest_overlap[i], volume[i]));
+    grains.q6.push_back(bond_order_q6(grains.cells.faces_of(i), grains.cells.surface[i]));
     grains.structure.push_back(structure(grains.phi_local[i], grains.q6[i]));
   }
-  grains.crystallite = crystallites_of(grains, diagram, connecting_face);
+  grains.crystallite = crystallites_of(grains, connecting_face);
   analysis.crystallites = crystallite_map(grains.crystallite, cell, pose, positions);
-  analysis.mechanics = mechanics(checkpoint, grains.cell_volume, grains.interior);
+  analysis.mechanics = mechanics(checkpoint, volume, grains.interior);
 
   const auto percent = [&](auto... wanted) {
     return percent_of(grains.interior,
                       [&](std::size_t i) { return ((grains.structure[i] == wanted) || ...); });
   };
-  const PackingFractions fractions =
-      packing_fractions(grains.largest_overlap, grains.cell_volume, grains.interior);
-  const auto contacts =
-      std::accumulate(grains.contacts.begin(), grains.contacts.end(), std::int64_t{0});
+  const auto [phi, phi_uncorrected] = packing_fractions(largest_overlap, volume, grains.interior);
+  const auto touches = std::accumulate(contacts.begin(), contacts.end(), std::int64_t{0});
   analysis.measures = {
       .grains = count,
       .interior_grains = static_cast<std::size_t>(std::ranges::count(grains.interior, 1)),
-      .phi = fractions.phi,
-      .phi_uncorrected = fractions.phi_uncorrected,
+      .phi = phi,
+      .phi_uncorrected = phi_uncorrected,
       .crystalline_percent = percent(Structure::fcc, Structure::hcp),
       .fcc_percent = percent(Structure::fcc),
       .hcp_percent = percent(Structure::hcp),
-      .mean_overlap_d = contact.mean,
-      .contacts_per_grain = static_cast<double>(contacts) / static_cast<double>(count),
+      .mean_overlap_d = mean_overlap,
+      .contacts_per_grain = static_cast<double>(touches) / static_cast<double>(count),
       .crystallites = analysis.crystallites.size.size(),
       .largest_crystallite = static_cast<std::size_t>(analysis.crystallites.largest())};
   return analysis;
 }
 
-std::vector<std::int32_t> crystallites_of(const GrainMeasures& grains,
-                                          const VoronoiDiagram& diagram, double least_share) {
+std::vector<std::int32_t> crystallites_of(const GrainMeasures& grains, double least_share) {
   std::vector<std::uint8_t> crystalline(grains.interior);
   for (std::size_t i = 0; i < crystalline.size(); ++i) {
     if (grains.structure[i] == Structure::disordered) crystalline[i] = 0;
   }
-  const auto surface = [&](std::size_t i) { return grains.cell_surface[i]; };
-  return crystallites(diagram, crystalline, least_share * mean_over(grains.interior, surface));
+  const auto surface = [&](std::size_t i) { return grains.cells.surface[i]; };
+  return crystallites(grains.cells, crystalline, least_share * mean_over(grains.interior, surface));
 }
 
 std::vector<Provider> packing_providers() {
@@ -84,9 +75,12 @@ std::vector<Provider> packing_providers() {
     for (double& one : pressure) one *= unit_Pa;
     std::vector<std::int32_t> crystallite = grains.crystallite;
     for (std::int32_t& label : crystallite) ++label;
-    return {{"phi_local", grains.phi_local},     {"q6", grains.q6},
-            {"overlap", grains.largest_overlap}, {"grain_pressure_Pa", pressure},
-            {"contacts", grains.contacts},       {"structure", grains.structure},
+    return {{"phi_local", grains.phi_local},
+            {"q6", grains.q6},
+            {"overlap", grains.overlaps.largest},
+            {"grain_pressure_Pa", pressure},
+            {"contacts", grains.overlaps.contacts},
+            {"structure", grains.structure},
             {"crystallite", crystallite}};
   };
   return {

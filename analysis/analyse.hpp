@@ -12,6 +12,7 @@
 
 #include "analysis/crystal.hpp"
 #include "analysis/mechanics.hpp"
+#include "analysis/packing_fraction.hpp"
 #include "provenance/checkpoint.hpp"
 
 namespace shearcell {
@@ -37,10 +38,8 @@ struct PackingMeasures {
 
 /// Arrays with one entry per grain, in the order of grain ids.
 struct GrainMeasures {
-  std::vector<double> cell_volume;      ///< [d^3]
-  std::vector<double> cell_surface;     ///< [d^2]
-  std::vector<double> largest_overlap;  ///< delta_max,i [d]
-  std::vector<std::int32_t> contacts;   ///< contacts with grains and wall grains
+  VoronoiDiagram cells;
+  Overlaps overlaps;
   std::vector<double> phi_local;
   std::vector<double> q6;
   std::vector<Structure> structure;       ///< also set for grains near the walls
@@ -79,7 +78,6 @@ double percent_of(std::span<const std::uint8_t> selected, const auto& holds) {
 
 /// crystallites() of the crystalline interior grains. A Voronoi face connects two grains if its
 /// area is at least `least_share` times the mean cell surface of interior grains.
-std::vector<std::int32_t> crystallites_of(const GrainMeasures& grains,
-                                          const VoronoiDiagram& diagram, double least_share);
+std::vector<std::int32_t> crystallites_of(const GrainMeasures& grains, double least_share);
 
 }  // namespace shearcell

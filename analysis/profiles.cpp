@@ -36,6 +36,7 @@ std::vector<std::size_t> layers_of(const Checkpoint& checkpoint, const WallPose&
 json profiles_of(const MeasureInput& input) {
   const Checkpoint& checkpoint = *input.checkpoint;
   const GrainMeasures& grains = input.analysis->grains;
+  const std::vector<double>& volumes = grains.cells.volume;
   const WallPose pose = pose_of(checkpoint);
   const auto layers = static_cast<std::size_t>(std::max(1.0, std::ceil(pose.top - pose.bottom)));
   const std::vector<std::size_t> layer_of = layers_of(checkpoint, pose, layers);
@@ -47,15 +48,16 @@ json profiles_of(const MeasureInput& input) {
     for (std::size_t i = 0; i < layer_of.size(); ++i) {
       inside.push_back(layer_of[i] == l ? 1 : 0);
       if (layer_of[i] != l) continue;
-      volume += grains.cell_volume[i];
-      trace += input.analysis->mechanics.grain_pressure[i] * grains.cell_volume[i];
+      volume += volumes[i];
+      trace += input.analysis->mechanics.grain_pressure[i] * volumes[i];
     }
     for (MeasuredCurve* one : {&phi, &pressure, &coordination, &crystalline}) {
       one->x.push_back(static_cast<double>(l) + 0.5);
     }
-    phi.y.push_back(packing_fractions(grains.largest_overlap, grains.cell_volume, inside).phi);
+    phi.y.push_back(packing_fractions(grains.overlaps.largest, volumes, inside).phi);
     pressure.y.push_back(trace / volume * unit_Pa);
-    coordination.y.push_back(mean_over(inside, [&](std::size_t i) { return grains.contacts[i]; }));
+    coordination.y.push_back(
+        mean_over(inside, [&](std::size_t i) { return grains.overlaps.contacts[i]; }));
     crystalline.y.push_back(percent_of(
         inside, [&](std::size_t i) { return grains.structure[i] != Structure::disordered; }));
   }
@@ -77,7 +79,7 @@ json wall_distance_of(const MeasureInput& input) {
     std::vector<std::uint8_t> inside;
     for (const double d : distance) inside.push_back(d >= low && d < low + layer ? 1 : 0);
     phi.x.push_back(low + layer / 2);
-    phi.y.push_back(packing_fractions(grains.largest_overlap, grains.cell_volume, inside).phi);
+    phi.y.push_back(packing_fractions(grains.overlaps.largest, grains.cells.volume, inside).phi);
   }
   return {{"phi_by_wall_distance", phi}};
 }
@@ -88,7 +90,7 @@ json core_of(const MeasureInput& input) {
   const Checkpoint& c = *input.checkpoint;
   const auto core = interior_grains(c.cell, pose_of(c), c.state.position, core_distance);
   return {{"core_grains", static_cast<double>(std::ranges::count(core, 1))},
-          {"core_phi", packing_fractions(grains.largest_overlap, grains.cell_volume, core).phi}};
+          {"core_phi", packing_fractions(grains.overlaps.largest, grains.cells.volume, core).phi}};
 }
 
 MeasuredCurve curve_of(const std::vector<double>& x, const auto& y_of) {
@@ -102,8 +104,6 @@ MeasuredCurve curve_of(const std::vector<double>& x, const auto& y_of) {
 json sensitivity_of(const MeasureInput& input) {
   const GrainMeasures& grains = input.analysis->grains;
   const Checkpoint& checkpoint = *input.checkpoint;
-  const VoronoiDiagram diagram =
-      voronoi(checkpoint.cell, pose_of(checkpoint), checkpoint.state.position);
   const auto crystalline = [&](double least_phi_local, double tolerance) {
     return percent_of(grains.interior, [&](std::size_t i) {
       return structure(grains.phi_local[i], grains.q6[i], least_phi_local, tolerance) !=
@@ -111,7 +111,7 @@ json sensitivity_of(const MeasureInput& input) {
     });
   };
   const auto largest = [&](double share) {
-    const std::vector<std::int32_t> label = crystallites_of(grains, diagram, share);
+    const std::vector<std::int32_t> label = crystallites_of(grains, share);
     return crystallite_map(label, checkpoint.cell, pose_of(checkpoint), checkpoint.state.position)
         .largest();
   };

@@ -61,9 +61,9 @@ PROPERTY(Measures, DoNotDependOnThePeriodicSeam, 250) {
   }
   move_along_z(p);
   const Analysis b = analyse(checkpoint_of(p));
-  RC_ASSERT(near(a.grains.cell_volume, b.grains.cell_volume, 1e-10));
-  RC_ASSERT(near(a.grains.cell_surface, b.grains.cell_surface, 1e-9));
-  RC_ASSERT(near(a.grains.largest_overlap, b.grains.largest_overlap, 1e-12));
+  RC_ASSERT(near(a.grains.cells.volume, b.grains.cells.volume, 1e-10));
+  RC_ASSERT(near(a.grains.cells.surface, b.grains.cells.surface, 1e-9));
+  RC_ASSERT(near(a.grains.overlaps.largest, b.grains.overlaps.largest, 1e-12));
   RC_ASSERT(near(a.grains.phi_local, b.grains.phi_local, 1e-9));
   RC_ASSERT(near(a.grains.q6, b.grains.q6, 1e-6));  // near 0 it is the root of a rounding error
   RC_ASSERT(a.grains.interior == b.grains.interior);

@@ -125,7 +125,7 @@ BruteForce brute_force(const Checkpoint& c, const GrainMeasures& grains) {
   };
   double volume = 0;
   for (Eigen::Index i = 0; i < n; ++i) {
-    if (interior(i)) volume += grains.cell_volume[static_cast<std::size_t>(i)];
+    if (interior(i)) volume += grains.cells.volume[static_cast<std::size_t>(i)];
     for (Eigen::Index j = 0; j < n + walls.cols(); ++j) {
       if (i == j) continue;
       Eigen::Vector3d r = p.col(i) - (j < n ? p.col(j) : walls.col(j - n));
@@ -195,9 +195,9 @@ TEST(Mechanics, EqualsSumsOverAllPairs) {
     EXPECT_LT(largest(m.wall_force - all.force), 1e-12);
     EXPECT_NEAR(m.elastic_energy, all.energy / 700, 1e-15);
     for (std::size_t i = 0; i < all.contacts.size(); ++i) {
-      EXPECT_NEAR(found.grains.largest_overlap[i], all.largest_overlap[i], 1e-13);
+      EXPECT_NEAR(found.grains.overlaps.largest[i], all.largest_overlap[i], 1e-13);
     }
-    EXPECT_EQ(found.grains.contacts, all.contacts);
+    EXPECT_EQ(found.grains.overlaps.contacts, all.contacts);
     EXPECT_NEAR(found.measures.mean_overlap_d, all.overlaps / all.pairs, 1e-13);
     const auto interior = static_cast<double>(found.measures.interior_grains);
     double rattlers = 0;

@@ -33,10 +33,10 @@ TEST(Profiles, LayersAddUpToTheWhole) {
     if (height < static_cast<double>(layer) || height >= static_cast<double>(layer) + 1) continue;
     const auto k = static_cast<std::size_t>(i);
     ++count;
-    volume += grains.cell_volume[k];
-    trace += analysis.mechanics.grain_pressure[k] * grains.cell_volume[k];
-    contacts += grains.contacts[k];
-    hard += std::numbers::pi / 6 * std::pow(1 - grains.largest_overlap[k], 3);
+    volume += grains.cells.volume[k];
+    trace += analysis.mechanics.grain_pressure[k] * grains.cells.volume[k];
+    contacts += grains.overlaps.contacts[k];
+    hard += std::numbers::pi / 6 * std::pow(1 - grains.overlaps.largest[k], 3);
   }
   ASSERT_GT(count, 5);
   EXPECT_NEAR(found.at("phi_profile").y[layer], hard / volume, 1e-12);
@@ -77,8 +77,8 @@ TEST(WallDistance, LayersAndCoreAreSumsOverGrains) {
     const auto k = static_cast<std::size_t>(i);
     const auto add = [&](Sums& sums) {
       ++sums.count;
-      sums.hard += std::numbers::pi / 6 * std::pow(1 - grains.largest_overlap[k], 3);
-      sums.cells += grains.cell_volume[k];
+      sums.hard += std::numbers::pi / 6 * std::pow(1 - grains.overlaps.largest[k], 3);
+      sums.cells += grains.cells.volume[k];
     };
     add(layers[static_cast<int>(std::floor(2 * distance))]);
     if (distance >= 4) add(inner);

@@ -101,7 +101,7 @@ TEST_F(PackingOf2000, HasTheOverlapOfThePressure) {
   const double unit = table_1.stiffness_N_per_m / table_1.diameter_m;  // k/d [Pa]
   double volume = 0;
   for (std::size_t i = 0; i < found.grains.interior.size(); ++i) {
-    if (found.grains.interior[i] != 0) volume += found.grains.cell_volume[i];
+    if (found.grains.interior[i] != 0) volume += found.grains.cells.volume[i];
   }
   const double density = static_cast<double>(found.measures.interior_grains) / volume;
   const double overlap = 6 * m.pressure / (density * m.coordination);  // mean of delta (d - delta)

@@ -132,7 +132,7 @@ nlohmann::json truth(const Checkpoint& c) {
     type.push_back(1 + static_cast<int>(side));
   }
   std::vector<double> phi_local = measured.grains.phi_local, q6 = measured.grains.q6,
-                      overlap = measured.grains.largest_overlap,
+                      overlap = measured.grains.overlaps.largest,
                       pressure = measured.mechanics.grain_pressure;
   std::vector<int> structure, crystallite, id;
   for (std::size_t i = 0; i < phi_local.size(); ++i) {
@@ -160,7 +160,7 @@ nlohmann::json truth(const Checkpoint& c) {
     if (std::fabs(c.state.position(1, column) - (pose.bottom + pose.top) / 2) > 1.5) continue;
     inner[i] = 1;
     inner_id.push_back(static_cast<int>(i) + 1);
-    inner_volume += measured.grains.cell_volume[i] * d * d * d;
+    inner_volume += measured.grains.cells.volume[i] * d * d * d;
   }
   // Pairs of them up to each distance, in steps of 0.02 d.
   std::vector<double> inner_pairs(75, 0);
@@ -174,12 +174,13 @@ nlohmann::json truth(const Checkpoint& c) {
   std::vector<int> lattice = provider("grain_lattices").compute({nullptr, &c}).at("lattice");
   std::vector<int> inner_contacts;
   lattice.resize(type.size(), -1);
-  std::vector<int> contacts(measured.grains.contacts.begin(), measured.grains.contacts.end());
+  std::vector<int> contacts(measured.grains.overlaps.contacts.begin(),
+                            measured.grains.overlaps.contacts.end());
   for (const int id_of : inner_id) {
     inner_contacts.push_back(contacts[static_cast<std::size_t>(id_of) - 1]);
   }
   contacts.resize(type.size(), 0);
-  const Mechanics m = mechanics(c, measured.grains.cell_volume, inner);
+  const Mechanics m = mechanics(c, measured.grains.cells.volume, inner);
   const double k_per_d = 654.0 / 3e-3;
   nlohmann::json facts = about().stage.resolved.at("parameters");
   facts.update({{"run", std::string(64, 'a')},
