@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <numeric>
 
-#include "analysis/error.hpp"
 #include "analysis/measures.hpp"
+#include "provenance/errors.hpp"
 
 namespace shearcell {
 

@@ -11,8 +11,8 @@
 #include <numbers>
 #include <utility>
 
-#include "analysis/error.hpp"
 #include "analysis/measures.hpp"
+#include "provenance/errors.hpp"
 
 namespace shearcell {
 namespace {

@@ -6,9 +6,9 @@
 #include <iterator>
 #include <stdexcept>
 
-#include "analysis/error.hpp"
 #include "analysis/packing_fraction.hpp"
 #include "core/named.hpp"
+#include "provenance/errors.hpp"
 #include "provenance/json_text.hpp"
 
 namespace shearcell {

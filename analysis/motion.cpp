@@ -7,10 +7,10 @@
 #include <cstddef>
 #include <limits>
 
-#include "analysis/error.hpp"
 #include "analysis/measures.hpp"
 #include "analysis/near_grains.hpp"
 #include "core/contact.hpp"
+#include "provenance/errors.hpp"
 
 namespace shearcell {
 namespace {

@@ -6,7 +6,7 @@
 #include <boost/algorithm/string/replace.hpp>
 #include <string_view>
 
-#include "analysis/error.hpp"
+#include "provenance/errors.hpp"
 #include "provenance/io/child_process.hpp"
 #include "provenance/io/file.hpp"
 

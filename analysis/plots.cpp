@@ -17,7 +17,6 @@
 #include <vector>
 
 #include "analysis/claims.hpp"
-#include "analysis/error.hpp"
 #include "analysis/estimators.hpp"
 #include "analysis/styles.hpp"
 #include "provenance/errors.hpp"

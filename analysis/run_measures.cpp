@@ -3,12 +3,12 @@
 // simulations that begin at the checkpoint, and the computing time of the run.
 #include <numbers>
 
-#include "analysis/error.hpp"
 #include "analysis/figure.hpp"
 #include "analysis/measures.hpp"
 #include "core/drive.hpp"
 #include "core/trigonometry.hpp"
 #include "core/watchdog.hpp"
+#include "provenance/errors.hpp"
 
 namespace shearcell {
 namespace {

@@ -19,7 +19,7 @@
 #include <map>
 #include <utility>
 
-#include "analysis/error.hpp"
+#include "provenance/errors.hpp"
 
 namespace shearcell {
 namespace {

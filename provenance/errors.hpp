@@ -43,4 +43,10 @@ struct StoreDamaged : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// The analysis cannot measure its input. The message names the grain, figure or file, and the
+/// reason.
+struct AnalysisError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
 }  // namespace shearcell

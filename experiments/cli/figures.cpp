@@ -5,7 +5,6 @@
 
 #include <set>
 
-#include "analysis/error.hpp"
 #include "core/machine.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/figures/draw.hpp"

@@ -10,7 +10,6 @@
 #include <optional>
 #include <set>
 
-#include "analysis/error.hpp"
 #include "core/machine.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/figures/draw.hpp"

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "analysis/claims.hpp"
-#include "analysis/error.hpp"
 #include "analysis/plot.hpp"
 #include "experiments/figures/lineage.hpp"
 #include "experiments/manifest/manifest.hpp"
@@ -18,6 +17,7 @@
 #include "experiments/manifest/shipped.hpp"
 #include "experiments/runner/host.hpp"
 #include "experiments/runner/registered.hpp"
+#include "provenance/errors.hpp"
 #include "provenance/events.hpp"
 #include "provenance/io/child_process.hpp"
 #include "provenance/io/file.hpp"

@@ -13,7 +13,6 @@
 #include <ranges>
 #include <span>
 
-#include "analysis/error.hpp"
 #include "analysis/plot.hpp"
 #include "experiments/figures/collect.hpp"
 #include "experiments/figures/draw.hpp"

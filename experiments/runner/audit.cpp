@@ -11,13 +11,13 @@
 #include <random>
 #include <utility>
 
-#include "analysis/error.hpp"
 #include "analysis/measures.hpp"
 #include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/schema.hpp"
 #include "experiments/runner/measure.hpp"
 #include "experiments/runner/stage.hpp"
 #include "provenance/derived.hpp"
+#include "provenance/errors.hpp"
 #include "provenance/events.hpp"
 #include "provenance/json_text.hpp"
 #include "provenance/lineage.hpp"

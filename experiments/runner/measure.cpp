@@ -10,7 +10,6 @@
 #include <mutex>
 #include <utility>
 
-#include "analysis/error.hpp"
 #include "core/drive.hpp"
 #include "core/threads.hpp"
 #include "experiments/manifest/conversion.hpp"

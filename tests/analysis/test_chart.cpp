@@ -9,9 +9,9 @@
 #include <limits>
 #include <sstream>
 
-#include "analysis/error.hpp"
 #include "analysis/figure.hpp"
 #include "analysis/plot.hpp"
+#include "provenance/errors.hpp"
 #include "tests/analysis/made_up_runs.hpp"
 #include "tests/support/text.hpp"
 

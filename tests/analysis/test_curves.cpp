@@ -13,7 +13,6 @@
 #include <tuple>
 #include <vector>
 
-#include "analysis/error.hpp"
 #include "analysis/figure.hpp"
 #include "analysis/plots.hpp"
 #include "provenance/errors.hpp"

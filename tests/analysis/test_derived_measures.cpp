@@ -9,7 +9,7 @@
 #include <cmath>
 #include <limits>
 
-#include "analysis/error.hpp"
+#include "provenance/errors.hpp"
 #include "provenance/sha256.hpp"
 #include "tests/analysis/packings.hpp"
 

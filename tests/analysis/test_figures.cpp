@@ -18,10 +18,10 @@
 #include <string_view>
 #include <thread>
 
-#include "analysis/error.hpp"
 #include "analysis/figure.hpp"
 #include "analysis/growth.hpp"
 #include "analysis/plot.hpp"
+#include "provenance/errors.hpp"
 #include "provenance/io/child_process.hpp"
 #include "provenance/io/file.hpp"
 #include "tests/analysis/made_up_runs.hpp"

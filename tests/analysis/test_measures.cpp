@@ -8,7 +8,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "analysis/error.hpp"
+#include "provenance/errors.hpp"
 #include "tests/analysis/random_points.hpp"
 
 namespace shearcell::test {

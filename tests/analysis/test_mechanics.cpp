@@ -9,9 +9,9 @@
 #include <cstring>
 #include <vector>
 
-#include "analysis/error.hpp"
 #include "analysis/measures.hpp"
 #include "core/contact.hpp"
+#include "provenance/errors.hpp"
 #include "tests/analysis/packings.hpp"
 
 namespace shearcell::test {

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/error.hpp"
 #include "analysis/measures.hpp"
 #include "core/contact.hpp"
+#include "provenance/errors.hpp"
 #include "tests/analysis/packings.hpp"
 
 namespace shearcell::test {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "analysis/crystal.hpp"
-#include "analysis/error.hpp"
+#include "provenance/errors.hpp"
 #include "tests/analysis/oracles.hpp"
 #include "tests/analysis/packings.hpp"
 #include "tests/analysis/random_points.hpp"

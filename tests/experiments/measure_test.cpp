@@ -8,7 +8,6 @@
 #include <cstdio>
 #include <span>
 
-#include "analysis/error.hpp"
 #include "experiments/figures/collect.hpp"
 #include "experiments/runner/audit.hpp"
 #include "experiments/runner/stage.hpp"

@@ -6,7 +6,6 @@
 #include <set>
 
 #include "analysis/crystal.hpp"
-#include "analysis/error.hpp"
 #include "analysis/growth.hpp"
 #include "analysis/measures.hpp"
 #include "analysis/nucleation.hpp"
@@ -15,6 +14,7 @@
 #include "experiments/manifest/lines.hpp"
 #include "experiments/manifest/packing_file.hpp"
 #include "provenance/derived.hpp"
+#include "provenance/errors.hpp"
 #include "provenance/projections.hpp"
 #include "provenance/ro_crate.hpp"
 #include "tests/provenance/samples.hpp"
