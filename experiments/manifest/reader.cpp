@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reads a manifest. fields() lists the keys of each struct. With this list, Reader reads and checks
-// the keys, and keys_markdown() documents them.
+// Reads a manifest. fields() lists the keys of each struct: for each key, the member that holds the
+// value, the name, the meaning and the allowed values. With this list, Reader reads and checks the
+// keys, and keys_markdown() documents them.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -75,14 +76,14 @@ Names numbers() {
 }
 
 void fields(Checkpoints& checkpoints, const auto& visit) {
-  visit(checkpoints.every_cycles, {.name = "every_cycles", .range = {1, StoreLimits::cycles}});
-  visit(checkpoints.phases,
-        {.name = "phases", .range = {-kInfinity, kInfinity}, .example = "[0.25, 0.5, 0.75]"});
+  visit(checkpoints.every_cycles, "every_cycles", "", {.range = {1, StoreLimits::cycles}});
+  visit(checkpoints.phases, "phases", "",
+        {.range = {-kInfinity, kInfinity}, .example = "[0.25, 0.5, 0.75]"});
 }
 
 Field field_of_until(const Measure& one) {
   const bool counts = one.kind == MeasureKind::count;
-  Field field{.name = one.name, .unit = one.unit, .whole = counts};
+  Field field{.unit = one.unit, .whole = counts};
   field.range = counts ? Range{1, 1e8} : Range{-1e100, 1e100};
   if (one.unit == "%") field.range = {0, 100, true};
   if (one.name == "phi" || one.name.ends_with("_phi")) field.range = {0, 1, true};
@@ -92,114 +93,99 @@ Field field_of_until(const Measure& one) {
 void fields(Until& until, const auto& visit) {
   for (const Provider& by : all_providers()) {
     for (const Measure& one : by.measures) {
-      if (can_be_until(one.name)) visit(until.value, field_of_until(one));
+      if (can_be_until(one.name)) visit(until.value, one.name, "", field_of_until(one));
     }
   }
-  visit(until.extra_cycles, {.name = "extra_cycles", .range = kCycles});
+  visit(until.extra_cycles, "extra_cycles", "", {.range = kCycles});
 }
 
 void fields(Sweep& sweep, const auto& visit) {
-  visit(sweep.grid, {.name = "grid"});
-  visit(sweep.zip, {.name = "zip"});
+  visit(sweep.grid, "grid");
+  visit(sweep.zip, "zip");
 }
 
 void fields(Start& start, const auto& visit) {
-  visit(start.experiment, {.name = "experiment", .doc = "experiment of the recorded run"});
-  visit(start.scale,
-        {.name = "scale", .doc = "scale of the recorded run; default: the scale of the new run"});
-  visit(start.variant,
-        {.name = "variant",
-         .doc = "swept values that select the variant of the recorded run, as in `where` or as "
-                "`\"fluid=still\"`. Default: the values of the new run, for each key that is "
-                "swept both in this manifest and in `experiment`",
-         .example = "{fluid: still}"});
-  visit(start.run, {.name = "checkpoint",
-                    .doc = "instead of experiment, seed and cycle: `ID@CYCLE`. ID is at least the "
-                           "first eight digits of the run's id; CYCLE is a whole number",
-                    .example = "0123abcd@10",
-                    .longest = kLongestLabel});
-  visit(start.settings, {.name = "seed", .doc = "parameter start_seed"});
-  visit(start.settings, {.name = "cycle", .doc = "parameter start_cycle, default 0"});
-  visit(start.settings, {.name = "noise_d", .doc = "parameter start_noise_d, default 0"});
-  visit(start.file,
-        {.name = "file",
-         .doc = "a file of grain positions, instead of a recorded run. The path is relative to the "
-                "folder of the manifest. If `settle` is given (even `{}`), the grains first settle",
-         .example = "packing.extxyz",
-         .longest = kLongestPath});
-  visit(start.unit, {.name = "unit", .doc = "unit of lengths, if the file does not give it"});
+  visit(start.experiment, "experiment", "experiment of the recorded run");
+  visit(start.scale, "scale", "scale of the recorded run; default: the scale of the new run");
+  visit(start.variant, "variant",
+        "swept values that select the variant of the recorded run, as in `where` or as "
+        "`\"fluid=still\"`. Default: the values of the new run, for each key that is swept both in "
+        "this manifest and in `experiment`",
+        {.example = "{fluid: still}"});
+  visit(start.run, "checkpoint",
+        "instead of experiment, seed and cycle: `ID@CYCLE`. ID is at least the first eight digits "
+        "of the run's id; CYCLE is a whole number",
+        {.example = "0123abcd@10", .longest = kLongestLabel});
+  visit(start.settings, "seed", "parameter start_seed");
+  visit(start.settings, "cycle", "parameter start_cycle, default 0");
+  visit(start.settings, "noise_d", "parameter start_noise_d, default 0");
+  visit(start.file, "file",
+        "a file of grain positions, instead of a recorded run. The path is relative to the folder "
+        "of the manifest. If `settle` is given (even `{}`), the grains first settle",
+        {.example = "packing.extxyz", .longest = kLongestPath});
+  visit(start.unit, "unit", "unit of lengths, if the file does not give it");
 }
 
 void fields(Scale& scale, const auto& visit) {
-  visit(scale.sweep,
-        {.name = "sweep",
-         .doc = "parameters that vary, with lists or ranges of values. `grid` combines all values "
-                "of its keys; `zip` combines the k-th values of all its keys",
-         .example = "{grid: {fluid: [still, cell]}}"});
-  visit(scale.settle, {.name = "settle",
-                       .doc = "parameter values that apply only while the packing settles. The "
-                              "parameters must act on the grains or on the moving wall. Variants "
-                              "that differ only in the parameters set here share their packings",
-                       .example = "{drag_kg_per_s: 1.28e-3}"});
-  visit(
-      scale.start,
-      {.name = "start",
-       .doc = "initial state: the grains of a file, or the state of a recorded run. Each seed can "
-              "add different noise to a recorded state. Default: loose grains that settle",
-       .besides = ", or `{file: packing.extxyz}`",
-       .example = "{experiment: drag, variant: \"fluid=still\", seed: 3, cycle: 10, noise_d: "
-                  "1.0e-13}"});
-  visit(scale.seeds,
-        {.name = "seeds",
-         .doc = "`6` means the seeds 1 to 6. Other seeds: `2001-2040` or `[1-6, 9]`. Default 1",
-         .example = "6"});
-  visit(scale.checkpoints,
-        {.name = "checkpoints",
-         .doc = "`every_cycles`: number of cycles between checkpoints, default 1; the last cycle "
-                "always has a checkpoint. `phases`: in the cycle after each checkpoint of "
-                "`every_cycles`, further checkpoints are written at these fractions of the cycle. "
-                "A pause counts as a part of the cycle. Default: none",
-         .example = "{every_cycles: 1, phases: [0.25, 0.5, 0.75]}"});
-  visit(scale.until,
-        {.name = "until",
-         .doc = "ends a run `extra_cycles` cycles after the measure first reaches the value; only "
-                "checkpoints at whole cycles count. Default: the run ends at `cycles`",
-         .besides = ", or `none`",
-         .example = "{crystalline_percent: 10, extra_cycles: 15}"});
-  visit(scale.looks, {.name = "looks",
-                      .range = {least_runs, ManifestLimits::runs},
-                      .doc = "planned looks (interim analyses), each given by the number of seeds "
-                             "that it includes. Claims get verdicts at each look. More looks widen "
-                             "the intervals. Default: one look, with all seeds",
-                      .example = "[12, 36, 60]"});
-  visit(scale.primary, {.name = "primary",
-                        .doc = "ids of the claims that these runs are meant to decide; all other "
-                               "claims are exploratory",
-                        .example = "[S5a.onset@amplitude_rad=0.05]",
-                        .longest = 300});
+  visit(scale.sweep, "sweep",
+        "parameters that vary, with lists or ranges of values. `grid` combines all values of its "
+        "keys; `zip` combines the k-th values of all its keys",
+        {.example = "{grid: {fluid: [still, cell]}}"});
+  visit(scale.settle, "settle",
+        "parameter values that apply only while the packing settles. The parameters must act on "
+        "the grains or on the moving wall. Variants that differ only in the parameters set here "
+        "share their packings",
+        {.example = "{drag_kg_per_s: 1.28e-3}"});
+  visit(scale.start, "start",
+        "initial state: the grains of a file, or the state of a recorded run. Each seed can add "
+        "different noise to a recorded state. Default: loose grains that settle",
+        {.besides = ", or `{file: packing.extxyz}`",
+         .example =
+             "{experiment: drag, variant: \"fluid=still\", seed: 3, cycle: 10, noise_d: 1.0e-13}"});
+  visit(scale.seeds, "seeds",
+        "`6` means the seeds 1 to 6. Other seeds: `2001-2040` or `[1-6, 9]`. Default 1",
+        {.example = "6"});
+  visit(scale.checkpoints, "checkpoints",
+        "`every_cycles`: number of cycles between checkpoints, default 1; the last cycle always "
+        "has a checkpoint. `phases`: in the cycle after each checkpoint of `every_cycles`, further "
+        "checkpoints are written at these fractions of the cycle. A pause counts as a part of the "
+        "cycle. Default: none",
+        {.example = "{every_cycles: 1, phases: [0.25, 0.5, 0.75]}"});
+  visit(scale.until, "until",
+        "ends a run `extra_cycles` cycles after the measure first reaches the value; only "
+        "checkpoints at whole cycles count. Default: the run ends at `cycles`",
+        {.besides = ", or `none`", .example = "{crystalline_percent: 10, extra_cycles: 15}"});
+  visit(scale.looks, "looks",
+        "planned looks (interim analyses), each given by the number of seeds that it includes. "
+        "Claims get verdicts at each look. More looks widen the intervals. Default: one look, with "
+        "all seeds",
+        {.range = {least_runs, ManifestLimits::runs}, .example = "[12, 36, 60]"});
+  visit(scale.primary, "primary",
+        "ids of the claims that these runs are meant to decide; all other claims are exploratory",
+        {.example = "[S5a.onset@amplitude_rad=0.05]", .longest = 300});
 }
 
 void fields(SeriesSpec& series, const auto& visit) {
-  visit(series.label, {.name = "label", .longest = kLongestLabel});
-  visit(series.colour,
-        {.name = "colour", .names = colour_names, .besides = ", or \"#rrggbb\" in quotes"});
-  visit(series.marker, {.name = "marker", .names = marker_names});
+  visit(series.label, "label", "", {.longest = kLongestLabel});
+  visit(series.colour, "colour", "",
+        {.names = colour_names, .besides = ", or \"#rrggbb\" in quotes"});
+  visit(series.marker, "marker", "", {.names = marker_names});
 }
 
 void fields(PublishedSpec& published, const auto& visit) {
   constexpr Range any = {-1e15, 1e15};
-  visit(published.label, {.name = "label", .longest = kLongestLabel});
-  visit(published.source, {.name = "source", .required = true, .longest = kLongestLabel});
-  visit(published.value, {.name = "value", .range = any});
-  visit(published.error, {.name = "error", .range = {0, any.max}});
-  visit(published.points, {.name = "points", .range = any, .example = "[[0.05, 0.646, 0.001]]"});
+  visit(published.label, "label", "", {.longest = kLongestLabel});
+  visit(published.source, "source", "", {.required = true, .longest = kLongestLabel});
+  visit(published.value, "value", "", {.range = any});
+  visit(published.error, "error", "", {.range = {0, any.max}});
+  visit(published.points, "points", "", {.range = any, .example = "[[0.05, 0.646, 0.001]]"});
 }
 
 void fields(MarkSpec& mark, const auto& visit) {
   static const Names runs = measures(MeasureKind::run);
-  visit(mark.x, {.name = "x", .names = runs, .required = true});
-  visit(mark.y, {.name = "y", .names = runs, .required = true});
-  visit(mark.label, {.name = "label", .longest = kLongestLabel});
+  visit(mark.x, "x", "", {.names = runs, .required = true});
+  visit(mark.y, "y", "", {.names = runs, .required = true});
+  visit(mark.label, "label", "", {.longest = kLongestLabel});
 }
 
 void fields(Placed<PlotSpec>& plot, const auto& visit) {
@@ -209,99 +195,77 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
                      can_be_x = joined({"cycle"}, scalars, can_be_by, runs);
   static const Names can_be_y = joined(scalars, measures(MeasureKind::curve), runs);
   static const Names terms = joined({"cycle"}, scalars, numbers(), runs);
-  visit(plot.name,
-        {.name = "name", .doc = "required; also the name of the plot's files", .required = true});
-  visit(plot.columns,
-        {.name = "y",
-         .doc = "required; a [measure](#measures), with values at checkpoints or one value for "
-                "each run (`onset_size_phi`), or an expression of measures and parameters: "
-                "`stress_xy_Pa/contact_pressure_Pa`. For a measure of the onset, the caption tells "
-                "how many runs end before the onset. A list draws several columns, and so does a "
-                "map from column names to measures: `{phi_u: phi_uncorrected, phi: phi}`",
-         .names = can_be_y,
-         .terms = terms,
-         .required = true});
-  visit(plot.x,
-        {.name = "x",
-         .doc = "`cycle` (default), a measure, a parameter, or an expression such as `1/period_s`. "
-                "If `x` has one value for each run, `y` is the value at `at_cycle`. If `x` is "
-                "a measure with one value for each run, such as `core_time_s`, each variant has "
-                "one point, at the mean of `x` over the runs of the variant",
-         .names = can_be_x,
-         .terms = terms});
-  visit(plot.where,
-        {.name = "where",
-         .doc = "selects runs by parameters, each with a value, a list, or a range `{min: 5200}`",
-         .example = "{fluid: [still, cell]}"});
-  visit(
-      plot.minus,
-      {.name = "minus",
-       .doc = "swept values that select one variant. The `y` of this variant, for the same packing "
-              "and cycle, is subtracted. The caption tells how many runs have no `y` to subtract",
-       .example = "{steps_per_cycle: 45600}"});
-  visit(plot.by,
-        {.name = "by",
-         .doc = "one curve for each value of this parameter. It is an error if a curve would "
-                "average over another swept parameter; use `where` to select one value of that "
-                "parameter. Default: one curve for each variant or, if `x` is a parameter, for "
-                "each combination of the other swept values",
-         .names = can_be_by});
-  visit(plot.figure,
-        {.name = "figure",
-         .doc = "name of a figure. Plots with the same `figure` are panels (a), (b), ... of one "
-                "figure. A claim can also have this key. Default: a separate figure"});
-  visit(plot.panel, {.name = "panel",
-                     .doc = "one panel for each value of this parameter, with equal axis ranges. "
-                            "The panels are named NAME_1, NAME_2, ...",
-                     .names = can_be_by});
-  visit(plot.show,
-        {.name = "show",
-         .doc = "`mean` (default) or `rms` (root mean square), with standard errors; `traces`: "
-                "every run as a line; `scatter`: every value as a point. With `traces` and "
-                "`scatter`, the CSV file lists every run. If `y` is a curve, or if `x` has one "
-                "value for each run, the file lists means instead"});
-  visit(plot.log, {.name = "log", .doc = "logarithmic axes; default `none`"});
-  visit(plot.xlabel,
-        {.name = "xlabel",
-         .doc = "label of the axis, with formulas between `$`: `drag $b$ [kg/s]`. For another "
-                "unit, use an expression: `x: 1000*diameter_m, xlabel: \"$d$ [mm]\"`",
-         .longest = kLongestLabel});
-  visit(plot.ylabel, {.name = "ylabel", .doc = "see `xlabel`", .longest = kLongestLabel});
-  visit(plot.series,
-        {.name = "series",
-         .doc = "styles of curves, in drawing order. A style has label, colour (blue, vermilion, "
-                "green, purple, orange, sky, black or `\"#rrggbb\"`) and marker. Each style is "
-                "written under one of these keys: a value of `by`; or `\"KEY=VALUE\"`, as in "
-                "`labels`; or a column name from the map `y`",
-         .example = "{still: {label: $v_f = 0$, colour: blue, marker: open_circle}}"});
-  visit(plot.published,
-        {.name = "published",
-         .doc = "published numbers that the plot shows. Each has a `source`, and either a `value` "
-                "with an `error` or a list `points`, whose items are [x, y] or [x, y, error]",
-         .example = "[{label: Jin et al., value: 0.646, error: 0.001, source: S C}]"});
-  visit(plot.columns, {.name = "also",
-                       .doc = "with `show: mean`: further columns of the CSV file, as a list of "
-                              "measures, or as a map from column names to measures: `{phi_u: "
-                              "phi_uncorrected}`",
-                       .names = can_be_y,
-                       .terms = terms,
-                       .example = "[phi_uncorrected]"});
-  visit(plot.mark,
-        {.name = "mark",
-         .doc = "a black point on each curve, at the means of two measures with one value per run",
-         .example = "{x: onset_size_cycle, y: onset_size_phi, label: onset}"});
-  visit(plot.cycle, {.name = "at_cycle",
-                     .range = kCycles,
-                     .doc = "the cycle to draw, if `y` is a curve for each checkpoint, or if `x` "
-                            "has one value for each run. Default: the last cycle that all runs "
-                            "have; the CSV file and the caption give the cycle"});
-  visit(plot.cycles,
-        {.name = "cycles",
-         .range = kCycles,
-         .doc = "with `show: traces` or `scatter`: the first and the last cycle to draw. A plot "
-                "with this key also draws the checkpoints at `phases`. All other plots draw only "
-                "whole cycles",
-         .example = "[20, 21]"});
+  visit(plot.name, "name", "required; also the name of the plot's files", {.required = true});
+  visit(plot.columns, "y",
+        "required; a [measure](#measures), with values at checkpoints or one value for each run "
+        "(`onset_size_phi`), or an expression of measures and parameters: "
+        "`stress_xy_Pa/contact_pressure_Pa`. For a measure of the onset, the caption tells how "
+        "many runs end before the onset. A list draws several columns, and so does a map from "
+        "column names to measures: `{phi_u: phi_uncorrected, phi: phi}`",
+        {.names = can_be_y, .terms = terms, .required = true});
+  visit(plot.x, "x",
+        "`cycle` (default), a measure, a parameter, or an expression such as `1/period_s`. If `x` "
+        "has one value for each run, `y` is the value at `at_cycle`. If `x` is a measure with one "
+        "value for each run, such as `core_time_s`, each variant has one point, at the mean of `x` "
+        "over the runs of the variant",
+        {.names = can_be_x, .terms = terms});
+  visit(plot.where, "where",
+        "selects runs by parameters, each with a value, a list, or a range `{min: 5200}`",
+        {.example = "{fluid: [still, cell]}"});
+  visit(plot.minus, "minus",
+        "swept values that select one variant. The `y` of this variant, for the same packing and "
+        "cycle, is subtracted. The caption tells how many runs have no `y` to subtract",
+        {.example = "{steps_per_cycle: 45600}"});
+  visit(plot.by, "by",
+        "one curve for each value of this parameter. It is an error if a curve would average over "
+        "another swept parameter; use `where` to select one value of that parameter. Default: one "
+        "curve for each variant or, if `x` is a parameter, for each combination of the other swept "
+        "values",
+        {.names = can_be_by});
+  visit(plot.figure, "figure",
+        "name of a figure. Plots with the same `figure` are panels (a), (b), ... of one figure. A "
+        "claim can also have this key. Default: a separate figure");
+  visit(plot.panel, "panel",
+        "one panel for each value of this parameter, with equal axis ranges. The panels are named "
+        "NAME_1, NAME_2, ...",
+        {.names = can_be_by});
+  visit(plot.show, "show",
+        "`mean` (default) or `rms` (root mean square), with standard errors; `traces`: every run "
+        "as a line; `scatter`: every value as a point. With `traces` and `scatter`, the CSV file "
+        "lists every run. If `y` is a curve, or if `x` has one value for each run, the file lists "
+        "means instead");
+  visit(plot.log, "log", "logarithmic axes; default `none`");
+  visit(plot.xlabel, "xlabel",
+        "label of the axis, with formulas between `$`: `drag $b$ [kg/s]`. For another unit, use an "
+        "expression: `x: 1000*diameter_m, xlabel: \"$d$ [mm]\"`",
+        {.longest = kLongestLabel});
+  visit(plot.ylabel, "ylabel", "see `xlabel`", {.longest = kLongestLabel});
+  visit(plot.series, "series",
+        "styles of curves, in drawing order. A style has label, colour (blue, vermilion, green, "
+        "purple, orange, sky, black or `\"#rrggbb\"`) and marker. Each style is written under one "
+        "of these keys: a value of `by`; or `\"KEY=VALUE\"`, as in `labels`; or a column name from "
+        "the map `y`",
+        {.example = "{still: {label: $v_f = 0$, colour: blue, marker: open_circle}}"});
+  visit(plot.published, "published",
+        "published numbers that the plot shows. Each has a `source`, and either a `value` with an "
+        "`error` or a list `points`, whose items are [x, y] or [x, y, error]",
+        {.example = "[{label: Jin et al., value: 0.646, error: 0.001, source: S C}]"});
+  visit(plot.columns, "also",
+        "with `show: mean`: further columns of the CSV file, as a list of measures, or as a map "
+        "from column names to measures: `{phi_u: phi_uncorrected}`",
+        {.names = can_be_y, .terms = terms, .example = "[phi_uncorrected]"});
+  visit(plot.mark, "mark",
+        "a black point on each curve, at the means of two measures with one value per run",
+        {.example = "{x: onset_size_cycle, y: onset_size_phi, label: onset}"});
+  visit(plot.cycle, "at_cycle",
+        "the cycle to draw, if `y` is a curve for each checkpoint, or if `x` has one value for "
+        "each run. Default: the last cycle that all runs have; the CSV file and the caption give "
+        "the cycle",
+        {.range = kCycles});
+  visit(plot.cycles, "cycles",
+        "with `show: traces` or `scatter`: the first and the last cycle to draw. A plot with this "
+        "key also draws the checkpoints at `phases`. All other plots draw only whole cycles",
+        {.range = kCycles, .example = "[20, 21]"});
 }
 
 void fields(Placed<ClaimSpec>& claim, const auto& visit) {
@@ -311,153 +275,123 @@ void fields(Placed<ClaimSpec>& claim, const auto& visit) {
                      estimators = names_of(all_estimators());
   static const Names can_be_against = joined(can_be_compared, numbers()),
                      terms = joined({"cycle"}, can_be_against);
-  visit(claim.id,
-        {.name = "id",
-         .doc = "required; letters, digits, -, _ and dots. `primary` and verdicts refer to the "
-                "claim by this id. The part before the first dot is the figure of the claim",
-         .example = "S2.phi",
-         .longest = kLongestName});
-  visit(claim.id, {.name = "name", .doc = "older name of the key `id`"});
-  visit(claim.figure,
-        {.name = "figure",
-         .doc = "see `figure` of a plot; default: the part of `id` before its first dot"});
-  visit(claim.compare,
-        {.name = "compare",
-         .doc = "required; a measure or an expression, as in `y` of a plot; curves are not allowed",
-         .names = can_be_compared,
-         .terms = terms,
-         .required = true});
-  visit(claim.estimator, {.name = "estimator",
-                          .doc = "quantity to estimate; by default, it follows from the other keys",
-                          .names = estimators});
+  visit(claim.id, "id",
+        "required; letters, digits, -, _ and dots. `primary` and verdicts refer to the claim by "
+        "this id. The part before the first dot is the figure of the claim",
+        {.example = "S2.phi", .longest = kLongestName});
+  visit(claim.id, "name", "older name of the key `id`");
+  visit(claim.figure, "figure",
+        "see `figure` of a plot; default: the part of `id` before its first dot");
+  visit(claim.compare, "compare",
+        "required; a measure or an expression, as in `y` of a plot; curves are not allowed",
+        {.names = can_be_compared, .terms = terms, .required = true});
+  visit(claim.estimator, "estimator",
+        "quantity to estimate; by default, it follows from the other keys", {.names = estimators});
+  visit(claim.against, "against",
+        "with `estimator: slope`: the column of the x axis, taken at the first checkpoint of each "
+        "run. With `spread_ratio`: the column whose standard deviation is the divisor",
+        {.names = can_be_against, .terms = can_be_against});
   visit(
-      claim.against,
-      {.name = "against",
-       .doc = "with `estimator: slope`: the column of the x axis, taken at the first checkpoint of "
-              "each run. With `spread_ratio`: the column whose standard deviation is the divisor",
-       .names = can_be_against,
-       .terms = can_be_against});
-  visit(claim.where, {.name = "where",
-                      .doc = "selects runs for both sides of the claim: values, lists of values, "
-                             "or ranges `{min: 5200}`",
-                      .example = "{amplitude_rad: [0.04, 0.05]}"});
-  visit(claim.for_each,
-        {.name = "for_each",
-         .doc = "a parameter. Each value of the parameter gives one claim, with the id "
-                "`ID@KEY=VALUE`. `{KEY}` in `statement` is replaced by the value",
-         .names = can_be_by});
-  visit(claim.between, {.name = "between",
-                        .doc = "the two sides that the claim compares, each selected by swept "
-                               "values. The difference is the first side minus the second side",
-                        .example = "[{fluid: still}, {fluid: cell}]"});
-  visit(claim.published,
-        {.name = "published",
-         .doc = "instead of `between`: a published number, which is subtracted from the mean over "
-                "the runs. With `is: lower` or `is: higher`, the margin can be left out: the "
-                "number is then a bound. The verdict ignores `error`, so a margin should include "
-                "the error",
-         .example = "{value: 0.646, error: 0.001, source: S C}"});
-  visit(claim.between[0], {.name = "of",
-                           .doc = "with `published`: swept values that select the variant to "
-                                  "compare with the published number",
-                           .example = "{fluid: still}"});
-  visit(claim.margin,
-        {.name = "margin",
-         .range = {0, kInfinity, true},
-         .doc = "in the unit of the measure. For `onset_size_cycle` and `reaches`, the margin is "
-                "the largest allowed log2 of the ratio of the two waiting times: a margin of 1 "
-                "allows a factor of 2. Claims about waiting times use the log-rank test, which "
-                "includes runs that end before the event"});
-  visit(claim.margin, {.name = "relative_margin",
-                       .range = {0, kInfinity, true},
-                       .doc = "instead of `margin`: limit of the relative difference; 0.03 means 3 "
-                              "%. The difference is computed from means of logarithms"});
-  visit(claim.cycles, {.name = "at_cycle", .range = kCycles, .doc = "cycle of the comparison"});
-  visit(claim.cycles, {.name = "cycles",
-                       .range = kCycles,
-                       .doc = "instead of `at_cycle`: the first and the last cycle of a range, "
-                              "over which the measure is averaged",
-                       .example = "[1, 15]"});
-  visit(claim.phi,
-        {.name = "phi",
-         .range = {0, 1},
-         .doc = "instead of `at_cycle`: a range of phi, over which the measure is averaged",
-         .example = "[0.646, 0.67]"});
-  visit(claim.reaches, {.name = "reaches",
-                        .range = {-1e15, 1e15},
-                        .doc = "instead of `at_cycle`: a value of the measure. The claim compares "
-                               "the two sides of `between` by the first cycle at which each run "
-                               "reaches this value"});
-  visit(claim.is, {.name = "is",
-                   .doc = "`same` (default): the difference is within the margin; `higher`, "
-                          "`lower`: the first side is higher or lower by more than the margin"});
-  visit(claim.statement,
-        {.name = "statement",
-         .doc = "what the claim says, for human readers; default: made from the other keys",
-         .longest = 300,
-         .folds = true});
-  visit(claim.optional, {.name = "optional",
-                         .doc = "`true`: no verdict at scales that lack one of the variants",
-                         .example = "true"});
-  visit(claim.cannot_be_decided,
-        {.name = "cannot_be_decided",
-         .doc = "the reason why no number of runs would decide the claim. The verdict is then "
-                "`cannot be decided`, with this reason and the measured numbers",
-         .example = "the error of the published number is larger than the margin",
-         .longest = 300});
+      claim.where, "where",
+      "selects runs for both sides of the claim: values, lists of values, or ranges `{min: 5200}`",
+      {.example = "{amplitude_rad: [0.04, 0.05]}"});
+  visit(claim.for_each, "for_each",
+        "a parameter. Each value of the parameter gives one claim, with the id `ID@KEY=VALUE`. "
+        "`{KEY}` in `statement` is replaced by the value",
+        {.names = can_be_by});
+  visit(claim.between, "between",
+        "the two sides that the claim compares, each selected by swept values. The difference is "
+        "the first side minus the second side",
+        {.example = "[{fluid: still}, {fluid: cell}]"});
+  visit(claim.published, "published",
+        "instead of `between`: a published number, which is subtracted from the mean over the "
+        "runs. With `is: lower` or `is: higher`, the margin can be left out: the number is then a "
+        "bound. The verdict ignores `error`, so a margin should include the error",
+        {.example = "{value: 0.646, error: 0.001, source: S C}"});
+  visit(
+      claim.between[0], "of",
+      "with `published`: swept values that select the variant to compare with the published number",
+      {.example = "{fluid: still}"});
+  visit(claim.margin, "margin",
+        "in the unit of the measure. For `onset_size_cycle` and `reaches`, the margin is the "
+        "largest allowed log2 of the ratio of the two waiting times: a margin of 1 allows a factor "
+        "of 2. Claims about waiting times use the log-rank test, which includes runs that end "
+        "before the event",
+        {.range = {0, kInfinity, true}});
+  visit(claim.margin, "relative_margin",
+        "instead of `margin`: limit of the relative difference; 0.03 means 3 %. The difference is "
+        "computed from means of logarithms",
+        {.range = {0, kInfinity, true}});
+  visit(claim.cycles, "at_cycle", "cycle of the comparison", {.range = kCycles});
+  visit(claim.cycles, "cycles",
+        "instead of `at_cycle`: the first and the last cycle of a range, over which the measure is "
+        "averaged",
+        {.range = kCycles, .example = "[1, 15]"});
+  visit(claim.phi, "phi",
+        "instead of `at_cycle`: a range of phi, over which the measure is averaged",
+        {.range = {0, 1}, .example = "[0.646, 0.67]"});
+  visit(claim.reaches, "reaches",
+        "instead of `at_cycle`: a value of the measure. The claim compares the two sides of "
+        "`between` by the first cycle at which each run reaches this value",
+        {.range = {-1e15, 1e15}});
+  visit(claim.is, "is",
+        "`same` (default): the difference is within the margin; `higher`, `lower`: the first side "
+        "is higher or lower by more than the margin");
+  visit(claim.statement, "statement",
+        "what the claim says, for human readers; default: made from the other keys",
+        {.longest = 300, .folds = true});
+  visit(claim.optional, "optional", "`true`: no verdict at scales that lack one of the variants",
+        {.example = "true"});
+  visit(claim.cannot_be_decided, "cannot_be_decided",
+        "the reason why no number of runs would decide the claim. The verdict is then `cannot be "
+        "decided`, with this reason and the measured numbers",
+        {.example = "the error of the published number is larger than the margin", .longest = 300});
 }
 
 void fields(Manifest& manifest, const auto& visit) {
-  visit(manifest.experiment, {.name = "experiment",
-                              .doc = "required; name of the experiment: letters, digits, - and _",
-                              .example = "drag"});
-  visit(manifest.question, {.name = "question",
-                            .doc = "the question that the experiment answers, for human readers",
-                            .example = "Does the fluid matter?",
-                            .longest = 2'000,
-                            .folds = true});
-  visit(manifest.of,
-        {.name = "of",
-         .doc = "experiments in the store whose runs the plots and claims use. A manifest with "
-                "this key defines no runs. A selection of runs may contain the key `experiment`",
-         .example = "[drag, timestep]"});
-  visit(manifest.figures,
-        {.name = "figures", .doc = "figures of the supplement to draw", .example = "[S2]"});
-  visit(manifest.labels, {.name = "labels",
-                          .doc = "display names of variants, for drawings, captions, claims, "
-                                 "progress messages, `status` and `table`",
-                          .example = "{\"fluid=still\": fluid at rest}"});
-  visit(manifest.plots, {.name = "plots",
-                         .doc = "your own figures",
-                         .example = "[{name: compaction, y: phi, x: cycle}]"});
-  visit(manifest.claims,
-        {.name = "claims",
-         .doc = "your own claims, decided like the claims of the supplement",
-         .example = "[{id: same, compare: phi, at_cycle: 10, between: [{fluid: still}, {fluid: "
+  visit(manifest.experiment, "experiment",
+        "required; name of the experiment: letters, digits, - and _", {.example = "drag"});
+  visit(manifest.question, "question",
+        "the question that the experiment answers, for human readers",
+        {.example = "Does the fluid matter?", .longest = 2'000, .folds = true});
+  visit(manifest.of, "of",
+        "experiments in the store whose runs the plots and claims use. A manifest with this key "
+        "defines no runs. A selection of runs may contain the key `experiment`",
+        {.example = "[drag, timestep]"});
+  visit(manifest.figures, "figures", "figures of the supplement to draw", {.example = "[S2]"});
+  visit(manifest.labels, "labels",
+        "display names of variants, for drawings, captions, claims, progress messages, `status` "
+        "and `table`",
+        {.example = "{\"fluid=still\": fluid at rest}"});
+  visit(manifest.plots, "plots", "your own figures",
+        {.example = "[{name: compaction, y: phi, x: cycle}]"});
+  visit(manifest.claims, "claims", "your own claims, decided like the claims of the supplement",
+        {.example = "[{id: same, compare: phi, at_cycle: 10, between: [{fluid: still}, {fluid: "
                     "cell}], margin: 0.001}]"});
-  visit(manifest.base.settings,
-        {.name = "base",
-         .doc = "parameters of every run; other parameters have their default",
-         .example = "{grains: 7900}"});
+  visit(manifest.base.settings, "base",
+        "parameters of every run; other parameters have their default",
+        {.example = "{grains: 7900}"});
   fields(manifest.base, visit);
-  visit(manifest.scales,
-        {.name = "scales",
-         .doc = "named sets of keys that override the keys above. The default scale is `desk`",
-         .example = "{smoke: {grains: 600, seeds: 2, cycles: 5}}"});
+  visit(manifest.scales, "scales",
+        "named sets of keys that override the keys above. The default scale is `desk`",
+        {.example = "{smoke: {grains: 600, seeds: 2, cycles: 5}}"});
 }
 
 template <class T>
 concept HasFields = requires(T& value) {
-  fields(value, [](auto&, const Field&) {});
+  fields(value, [](auto&, string_view, string_view = "", const Field& = {}) {});
 };
 
 template <HasFields T>
 std::vector<Field> keys_of() {
   T empty;
   std::vector<Field> keys;
-  fields(empty, [&]<class Member>(Member&, const Field& field) {
-    keys.push_back(with_type<Member>(field));
-  });
+  fields(empty,
+         [&]<class Member>(Member&, string_view name, string_view doc = "", Field field = {}) {
+           field.name = name;
+           field.doc = doc;
+           keys.push_back(with_type<Member>(field));
+         });
   return keys;
 }
 
@@ -470,17 +404,13 @@ constexpr string_view kRangeExample = "{from: 300, to: 3000, count: 5, spacing: 
 
 void fields(ValueRange& range, const auto& visit) {
   constexpr Range any = {-kInfinity, kInfinity};
-  visit(range.from, {.name = "from", .range = any, .doc = "the first value", .required = true});
-  visit(range.to, {.name = "to", .range = any, .doc = "the last value", .required = true});
-  visit(range.count, {.name = "count",
-                      .range = {2, ManifestLimits::values_per_list},
-                      .doc = "number of values, both ends included",
-                      .required = true});
-  visit(range.spacing,
-        {.name = "spacing",
-         .doc =
-             "equal steps (`linear`, the default) or equal ratios (`log`). Values between the ends "
-             "are rounded to 12 significant digits, or to whole numbers if the key needs them"});
+  visit(range.from, "from", "the first value", {.range = any, .required = true});
+  visit(range.to, "to", "the last value", {.range = any, .required = true});
+  visit(range.count, "count", "number of values, both ends included",
+        {.range = {2, ManifestLimits::values_per_list}, .required = true});
+  visit(range.spacing, "spacing",
+        "equal steps (`linear`, the default) or equal ratios (`log`). Values between the ends are "
+        "rounded to 12 significant digits, or to whole numbers if the key needs them");
 }
 
 // The text that messages show for the value of the node.
@@ -707,11 +637,13 @@ struct Reader {
   template <HasFields T>
   bool read_key(const Node& in, T& value) {
     bool known = false;
-    fields(value, [&]<class Member>(Member& member, const Field& about) {
-      if (about.name != in.key) return;
-      known = true;
-      read(in, with_type<Member>(about), member);
-    });
+    fields(value,
+           [&]<class Member>(Member& member, string_view name, string_view = "", Field about = {}) {
+             if (name != in.key) return;
+             known = true;
+             about.name = name;
+             read(in, with_type<Member>(about), member);
+           });
     return known;
   }
 
