@@ -824,10 +824,9 @@ struct Reader {
   // Reads a parameter of `base`, `settle` or `start`. `KEY` in `start` is the parameter start_KEY.
   void read(const Node& in, const Field& about, Settings& settings) {
     if (about.name != "base" && about.name != "settle") {
-      const string key = "start_" + in.key;
-      if (auto value = read_scalar(in, *find_field(key))) {
-        settings[key] = {std::move(*value), in.at};
-      }
+      Node parameter = in;
+      parameter.key.insert(0, "start_");
+      read_parameter(parameter, settings);
       return;
     }
     settings.clear();
@@ -1057,10 +1056,9 @@ struct Reader {
           "Write 8 or more digits of the run's id, @ and the cycle: `0123abcd@10`.");
     }
     Node cycle = *checkpoint;
+    cycle.key = "start_cycle";
     cycle.text.erase(0, at + 1);
-    if (auto value = read_scalar(cycle, *find_field("start_cycle"))) {
-      start.settings["start_cycle"] = {std::move(*value), checkpoint->at};
-    }
+    read_parameter(cycle, start.settings);
   }
 
   void check(const Node& in, const Field&, const ValueRange& range) {
