@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/manifest/suggest.hpp"
 
-#include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <boost/algorithm/string/case_conv.hpp>
 #include <cctype>
-#include <iterator>
 #include <sstream>
 
 #include "experiments/manifest/schema.hpp"
@@ -19,23 +16,6 @@ namespace {
 using std::string_view;
 
 constexpr std::size_t kLongestGuess = 300;
-
-const std::vector<Tried>& all_tried() {
-  static const std::vector<Tried> all = [] {
-    std::vector<Tried> entries;
-    for (string_view rest = tried_names; !rest.empty();) {
-      const string_view line = rest.substr(0, rest.find('\n'));
-      rest.remove_prefix(std::min(line.size() + 1, rest.size()));
-      const std::size_t first = line.find('|'), second = line.find('|', first + 1);
-      if (line.starts_with('#') || second == line.npos) continue;
-      entries.push_back({trimmed(line.substr(0, first)),
-                         trimmed(line.substr(first + 1, second - first - 1)),
-                         trimmed(line.substr(second + 1))});
-    }
-    return entries;
-  }();
-  return all;
-}
 
 // The name in lower case, with `_` before, between and after its words: "_time_step_".
 std::string as_words(string_view name) {
@@ -78,7 +58,7 @@ const Tried* find_tried(string_view name, std::span<const string_view> candidate
   if (name.size() > kLongestGuess) return nullptr;
   const std::string words = as_words(name);
   const Tried* found = nullptr;
-  for (const Tried& one : all_tried()) {
+  for (const Tried& one : tried_names) {
     std::istringstream names{std::string(one.names)};
     const bool fits = std::any_of(std::istream_iterator<std::string>(names), {}, [&](auto& tried) {
       const std::string tried_words = as_words(tried);
