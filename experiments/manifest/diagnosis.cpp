@@ -23,7 +23,6 @@
 #include "experiments/manifest/conversion.hpp"
 #include "experiments/manifest/document.hpp"
 #include "experiments/manifest/expand.hpp"
-#include "experiments/manifest/identity.hpp"
 #include "experiments/manifest/schema.hpp"
 #include "experiments/manifest/shipped.hpp"
 #include "experiments/manifest/suggest.hpp"
@@ -51,9 +50,9 @@ struct VariantCheck {
     check_time_steps();
     check_cell();
     check_start();
-    if (const string why = unfit_for_lammps(p, scale.checkpoints); !why.empty()) {
-      report({"engine"}, why, "Remove `engine`, or change the key that LAMMPS does not support.");
-    }
+    const string why = unfit_for_lammps(p, scale.checkpoints);
+    report_if(!why.empty(), {"engine"}, why,
+              "Remove `engine`, or change the key that LAMMPS does not support.");
     if (!scale.checkpoints.phases.empty()) check_phases();
   }
 
@@ -73,10 +72,11 @@ struct VariantCheck {
     return nullptr;
   }
 
-  // Reports a problem with the value of the first key in `keys`. The message gives the line of this
-  // key or, if the manifest does not set it, of the next key in `keys` that the manifest sets.
-  void report(std::initializer_list<string_view> keys, const string& problem,
-              const string& remedy) {
+  // If `wrong`, reports a problem with the value of the first key in `keys`. The message gives the
+  // line of this key or, if the manifest does not set it, of the next key that the manifest sets.
+  void report_if(bool wrong, std::initializer_list<string_view> keys, const string& problem,
+                 const string& remedy) {
+    if (!wrong) return;
     const string_view key = *keys.begin();
     const Setting* stated = find(key);
     const json value = stated != nullptr ? stated->value : find_field(key)->get(p);
@@ -88,8 +88,9 @@ struct VariantCheck {
                  (stated != nullptr ? "" : "the default ") + value_text(value), remedy);
   }
 
-  void refuse(const Position& at, const char* key, const string& problem, const string& remedy) {
-    problems.add(at, key, problem, "", remedy);
+  void refuse_if(bool wrong, const Position& at, const char* key, const string& problem,
+                 const string& remedy) {
+    if (wrong) problems.add(at, key, problem, "", remedy);
   }
 
   // Reports each number computed for `auto` that is out of range. Returns true if all are in range.
@@ -99,11 +100,11 @@ struct VariantCheck {
       if (setting.value != "auto") continue;
       const Field& field = *find_field(key);
       const json value = field.get(p);
-      if (!check_value(field, value)) continue;
-      report({key}, format("results in {}, which is out of range", value_text(value)),
-             format("Write {}, or change stiffness_N_per_m, mass_kg or period_s.",
-                    expected_values(field)));
-      sound = false;
+      const bool in_range = !check_value(field, value);
+      report_if(!in_range, {key}, format("results in {}, which is out of range", value_text(value)),
+                format("Write {}, or change stiffness_N_per_m, mass_kg or period_s.",
+                       expected_values(field)));
+      sound = sound && in_range;
     }
     return sound;
   }
@@ -114,55 +115,46 @@ struct VariantCheck {
     const auto over = [](double of) {
       return format("is over the stability limit 2/sqrt(8 k/m) = {:.4g} s", of);
     };
-    if (p.protocol != ProtocolKind::stiffen && step >= limit) {
-      report({"steps_per_cycle", "period_s", "stiffness_N_per_m", "mass_kg"},
-             format("the time step period_s/steps_per_cycle = {:.4g} s {}", step, over(limit)),
-             format("Use at least {:.0f} steps per cycle, or `auto`.",
-                    std::floor(p.period_s / limit) + 1));
-    }
-    if (settle_step >= settle_limit) {
-      report({"settle_time_step_s", "settle.stiffness_N_per_m", "stiffness_N_per_m", "mass_kg"},
-             format("the time step {:.4g} s {}", settle_step, over(settle_limit)),
-             format("Use less than {:.4g} s, or `auto`.", settle_limit));
-    }
-    const double seconds = std::max(p.settle_time_limit_s, kSettleCheckInterval);
-    if (seconds / settle_step > kMostSteps) {
-      report({"settle_time_step_s"},
-             format("settling may need {:.3g} time steps, but at most {:g} are allowed",
-                    seconds / settle_step, kMostSteps),
-             "Raise this value, or lower settle_time_limit_s.");
-    }
-    if (const double pause = pause_time_steps(p);
-        p.protocol == ProtocolKind::paused && pause > kMostPauseSteps) {
-      report(
-          {"pause_s", "period_s", "steps_per_cycle"},
-          format("the pause takes {:.3g} time steps", pause),
-          format("Use a pause of at most {:g} time steps. A time step is period_s/steps_per_cycle.",
-                 kMostPauseSteps));
-    }
+    report_if(p.protocol != ProtocolKind::stiffen && step >= limit,
+              {"steps_per_cycle", "period_s", "stiffness_N_per_m", "mass_kg"},
+              format("the time step period_s/steps_per_cycle = {:.4g} s {}", step, over(limit)),
+              format("Use at least {:.0f} steps per cycle, or `auto`.",
+                     std::floor(p.period_s / limit) + 1));
+    report_if(settle_step >= settle_limit,
+              {"settle_time_step_s", "settle.stiffness_N_per_m", "stiffness_N_per_m", "mass_kg"},
+              format("the time step {:.4g} s {}", settle_step, over(settle_limit)),
+              format("Use less than {:.4g} s, or `auto`.", settle_limit));
+    const double steps = std::max(p.settle_time_limit_s, kSettleCheckInterval) / settle_step;
+    report_if(steps > kMostSteps, {"settle_time_step_s"},
+              format("settling may need {:.3g} time steps, but at most {:g} are allowed", steps,
+                     kMostSteps),
+              "Raise this value, or lower settle_time_limit_s.");
+    const double pause = pause_time_steps(p);
+    report_if(
+        p.protocol == ProtocolKind::paused && pause > kMostPauseSteps,
+        {"pause_s", "period_s", "steps_per_cycle"},
+        format("the pause takes {:.3g} time steps", pause),
+        format("Use a pause of at most {:g} time steps. A time step is period_s/steps_per_cycle.",
+               kMostPauseSteps));
   }
 
   void check_cell() {
     const Geometry shape = geometry(p);
-    if (cell_width(shape) < kShallowestCell) {
-      report({"grains"},
-             format("with this number of grains the cell is {:.3g} d wide and deep, less than {} d",
-                    cell_width(shape), kShallowestCell),
-             "Use more grains.");
-    }
-    if (too_large(shape)) {
-      report({"fill_packing_fraction", "nominal_packing_fraction"},
-             format("the cell for the loose grains would be too large: {:.3g} d wide and {:.3g} d "
-                    "high, with {:.2g} wall grains for {} grains",
-                    cell_width(shape), fill_height(shape), wall_grain_count(shape), p.grains),
-             "Raise this value, or nominal_packing_fraction.");
-    }
-    if (p.fill_packing_fraction >= p.nominal_packing_fraction) {
-      report({"fill_packing_fraction", "nominal_packing_fraction"},
-             "the random initial packing must be looser than the settled packing",
-             format("Choose a value below nominal_packing_fraction ({}).",
-                    p.nominal_packing_fraction));
-    }
+    report_if(
+        cell_width(shape) < kShallowestCell, {"grains"},
+        format("with this number of grains the cell is {:.3g} d wide and deep, less than {} d",
+               cell_width(shape), kShallowestCell),
+        "Use more grains.");
+    report_if(too_large(shape), {"fill_packing_fraction", "nominal_packing_fraction"},
+              format("the cell for the loose grains would be too large: {:.3g} d wide and {:.3g} d "
+                     "high, with {:.2g} wall grains for {} grains",
+                     cell_width(shape), fill_height(shape), wall_grain_count(shape), p.grains),
+              "Raise this value, or nominal_packing_fraction.");
+    report_if(
+        p.fill_packing_fraction >= p.nominal_packing_fraction,
+        {"fill_packing_fraction", "nominal_packing_fraction"},
+        "the random initial packing must be looser than the settled packing",
+        format("Choose a value below nominal_packing_fraction ({}).", p.nominal_packing_fraction));
   }
 
   void check_start() {
@@ -170,38 +162,31 @@ struct VariantCheck {
     if (!start.is_recorded()) {
       for (const char* key : {"start_seed", "start_cycle", "start_noise_d"}) {
         const Field& field = *find_field(key);
-        if (field.get(p) == field.get({})) continue;
-        report({key}, "has no effect without `start`",
-               "Add `start: {experiment: NAME}`, or remove this key.");
+        report_if(field.get(p) != field.get({}), {key}, "has no effect without `start`",
+                  "Add `start: {experiment: NAME}`, or remove this key.");
       }
       return;
     }
-    if (p.protocol == ProtocolKind::stiffen) {
-      refuse(start.at, "start", "cannot be used with protocol stiffen",
-             "Use protocol continuous or paused.");
-    }
-    if (start.run.empty() && find("start_seed") == nullptr) {
-      refuse(start.at, "start", "lacks seed", "Give the seed of the recorded run: `seed: 3`.");
-    }
-    if (scale.settle_at.line > 0) {
-      refuse(scale.settle_at, "settle", "has no effect with `start`, because nothing settles",
-             "Leave it out.");
-    }
+    refuse_if(p.protocol == ProtocolKind::stiffen, start.at, "start",
+              "cannot be used with protocol stiffen", "Use protocol continuous or paused.");
+    refuse_if(start.run.empty() && find("start_seed") == nullptr, start.at, "start", "lacks seed",
+              "Give the seed of the recorded run: `seed: 3`.");
+    refuse_if(scale.settle_at.line > 0, scale.settle_at, "settle",
+              "has no effect with `start`, because nothing settles", "Leave it out.");
   }
 
   void check_phases() {
     const Drive motion = drive(p);
     const auto& [every, phases, at] = scale.checkpoints;
-    constexpr const char* key = "checkpoints.phases";
-    if (p.protocol == ProtocolKind::stiffen) {
-      refuse(at, key, "protocol stiffen has no cycles", "Remove this key.");
-    } else if (steps_at(phases, motion).size() != phases.size()) {
-      refuse(at, key,
-             format("two phases fall on one time step, or a phase falls on the end of the cycle, "
-                    "because a cycle has only {} time steps",
-                    cycle_steps(motion)),
-             "Use fewer phases, or more steps_per_cycle.");
-    }
+    const bool has_cycles = p.protocol != ProtocolKind::stiffen;
+    refuse_if(!has_cycles, at, "checkpoints.phases", "protocol stiffen has no cycles",
+              "Remove this key.");
+    refuse_if(has_cycles && steps_at(phases, motion).size() != phases.size(), at,
+              "checkpoints.phases",
+              format("two phases fall on one time step, or a phase falls on the end of the cycle, "
+                     "because a cycle has only {} time steps",
+                     cycle_steps(motion)),
+              "Use fewer phases, or more steps_per_cycle.");
   }
 };
 
@@ -300,44 +285,40 @@ void warn_of_ineffective(const Manifest& manifest, const Scale& scale,
 std::vector<string> advice_on(const Variant& variant, bool settles) {
   const Parameters &p = variant.parameters, &packing = variant.packing;
   std::vector<string> advice;
+  const auto advise_if = [&](bool wrong, const string& text) {
+    if (wrong) advice.push_back(text);
+  };
   // Density of a grain [kg/m^3]. All known solids are within the limits of the next line.
   const double density = 6 / std::numbers::pi * p.mass_kg / std::pow(p.diameter_m, 3);
-  if (density < 0.1 || density > 1e5) {
-    advice.push_back(
-        format("grains of {:g} m and {:g} kg have a density of {:.2g} kg/m^3. Check the units of "
-               "diameter_m [m] and mass_kg [kg].",
-               p.diameter_m, p.mass_kg, density));
-  }
-  if (!pressure_lifts_column(p)) {
-    advice.push_back(
-        format("at the pressure of {} Pa, the moving bottom wall cannot lift the grains (N = {}). "
-               "Use `pressure_at: top` or `moving_wall: top`, raise pressure_Pa, turn gravity "
-               "off, or lower height_over_width.",
-               p.pressure_Pa, p.grains));
-  }
-  if (!has_interior(p)) {
-    advice.push_back(
-        format("the cell of {} grains is too small to have interior grains, which are at least 1.5 "
-               "d from the walls. So phi and other measures of interior grains have no value. Use "
-               "more grains.",
-               p.grains));
-  }
-  if (const double overlap = expected_overlap(p); overlap > p.max_overlap_diameters) {
-    advice.push_back(
-        format("grains will overlap by {:.2g} d on average, and a run stops if an overlap exceeds "
-               "max_overlap_diameters ({:g}). Raise stiffness_N_per_m, or lower pressure_Pa.",
-               overlap, p.max_overlap_diameters));
-  }
+  advise_if(density < 0.1 || density > 1e5,
+            format("grains of {:g} m and {:g} kg have a density of {:.2g} kg/m^3. Check the units "
+                   "of diameter_m [m] and mass_kg [kg].",
+                   p.diameter_m, p.mass_kg, density));
+  advise_if(!pressure_lifts_column(p),
+            format("at the pressure of {} Pa, the moving bottom wall cannot lift the grains (N = "
+                   "{}). Use `pressure_at: top` or `moving_wall: top`, raise pressure_Pa, turn "
+                   "gravity off, or lower height_over_width.",
+                   p.pressure_Pa, p.grains));
+  advise_if(!has_interior(p), format("the cell of {} grains is too small to have interior grains, "
+                                     "which are at least 1.5 d from the walls. So phi and other "
+                                     "measures of interior grains have no value. Use more grains.",
+                                     p.grains));
+  const double overlap = expected_overlap(p);
+  advise_if(
+      overlap > p.max_overlap_diameters,
+      format("grains will overlap by {:.2g} d on average, and a run stops if an overlap exceeds "
+             "max_overlap_diameters ({:g}). Raise stiffness_N_per_m, or lower pressure_Pa.",
+             overlap, p.max_overlap_diameters));
   for (const auto& [seconds, what] :
        {std::pair(damping_time_s(packing), "the grains come to rest"),
         {pressing_time_s(packing), "the moving wall presses the grains together"}}) {
-    if (!settles || seconds <= p.settle_time_limit_s) continue;
-    advice.push_back(format(
-        "with drag_kg_per_s {:g} and wall_drag_grains_per_d2_s {:g} {} {}, so settling fails at "
-        "settle_time_limit_s ({:g} s). Change the drag, pressure_Pa or the limit.",
-        packing.drag_kg_per_s, packing.wall_drag_grains_per_d2_s, what,
-        seconds < 1e6 ? format("only after about {:.2g} s", seconds) : "too late",
-        p.settle_time_limit_s));
+    advise_if(
+        settles && seconds > p.settle_time_limit_s,
+        format("with drag_kg_per_s {:g} and wall_drag_grains_per_d2_s {:g} {} {}, so settling "
+               "fails at settle_time_limit_s ({:g} s). Change the drag, pressure_Pa or the limit.",
+               packing.drag_kg_per_s, packing.wall_drag_grains_per_d2_s, what,
+               seconds < 1e6 ? format("only after about {:.2g} s", seconds) : "too late",
+               p.settle_time_limit_s));
   }
   for (const auto& [step, key, is_used] :
        {std::tuple(time_step(p, shear_time_step_s(p)), "steps_per_cycle",
@@ -506,8 +487,7 @@ std::vector<string> problems_of(const PlotSpec& plot, const ScaleRuns& here,
   if (plot.x == "shear_strain" && (!plot.cycles || here.scale.checkpoints.phases.empty())) {
     found.push_back(
         "shear_strain is 0 at whole cycles. To draw phases within a cycle, set `cycles` in the "
-        "plot "
-        "and `phases` in `checkpoints`.");
+        "plot and `phases` in `checkpoints`.");
   }
   for (const SeriesSpec& one : plot.series) {
     // A listed plot is checked only in the manifest that defines it.
