@@ -7,7 +7,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <stdexcept>
 #include <vector>
 
 #include "experiments/manifest/conversion.hpp"

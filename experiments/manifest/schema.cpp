@@ -8,7 +8,6 @@
 #include <cctype>
 #include <cmath>
 
-#include "core/named.hpp"
 #include "core/simulation.hpp"
 #include "experiments/manifest/document.hpp"
 #include "experiments/manifest/suggest.hpp"

@@ -16,7 +16,6 @@
 #include "experiments/manifest/schema.hpp"
 #include "provenance/json_text.hpp"
 #include "provenance/sha256.hpp"
-#include "provenance/words.hpp"
 
 namespace shearcell {
 namespace {
