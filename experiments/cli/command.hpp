@@ -160,6 +160,7 @@ CLI::IsMember one_of() {
   return CLI::IsMember(std::vector<std::string>(kNames<Enum>.begin(), kNames<Enum>.end()));
 }
 
+/// Adds --threads. `what`: the beginning of its help text.
 void add_threads_option(CLI::App& command, std::size_t& threads, const std::string& what);
 
 /// Returns the folder of the store if it exists, else its nearest parent folder that exists.
