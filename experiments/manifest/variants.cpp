@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/manifest/variants.hpp"
 
-#include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
@@ -146,19 +145,10 @@ json value_at(const Scale& scale, std::string_view key) {
   return stated == scale.settings.end() ? find_field(key)->get(Parameters{}) : stated->second.value;
 }
 
-Filter::Filter(const std::vector<std::string>& wanted) {
-  for (const std::string& text : wanted) {
-    Wanted& one = wanted_.emplace_back(Wanted{text, "", parts_of(text)});
-    for (const auto& [key, value] : one.parts) {
-      if (value != "") one.keys += key + ",";
-    }
-  }
-}
-
-Filter::Filter(const std::vector<std::uint64_t>& wanted) {
-  for (const std::uint64_t number : wanted) {
-    const std::string text = std::to_string(number);
-    wanted_.push_back({text, "", {{text, ""}}});
+void Filter::add(const std::string& text) {
+  Wanted& one = wanted_.emplace_back(Wanted{text, "", parts_of(text)});
+  for (const auto& [key, value] : one.parts) {
+    if (value != "") one.keys += key + ",";
   }
 }
 

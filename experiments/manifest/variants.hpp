@@ -2,6 +2,8 @@
 // The variants of an experiment at one scale (`base`, scale and sweep combined), and their names.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <cstdint>
 #include <limits>
 #include <map>
@@ -40,8 +42,9 @@ std::string same_spelling(std::string_view part);
 /// notation, with or without a unit.
 class Filter {
  public:
-  explicit Filter(const std::vector<std::string>& wanted);
-  explicit Filter(const std::vector<std::uint64_t>& wanted);
+  explicit Filter(const auto& wanted) {
+    for (const auto& one : wanted) add(fmt::format("{}", one));
+  }
 
   /// Whether the texts select `value`. A part of a text may be a part of `value` or of `name`, the
   /// display name of `value`. Texts with different keys must all fit. Of the texts with the same
@@ -60,6 +63,8 @@ class Filter {
     std::set<std::pair<std::string, nlohmann::json>> parts;  ///< keys and values
     bool found = false;
   };
+  void add(const std::string& text);
+
   std::vector<Wanted> wanted_;
   std::vector<std::string> seen_;
   std::set<std::string> known_;  ///< the values in seen_
