@@ -137,7 +137,7 @@ TEST(FigureS7, CountsRunsOfOnePackingTogether) {
   const std::vector<FrameRun> runs = runs_with_places(10, even, even);
   const Verdict once = s7(runs).verdicts[1];
   const Verdict shared = s7(with_copies(runs, 0.1, true)).verdicts[1];
-  EXPECT_EQ(shared.estimate, once.estimate);
+  EXPECT_EQ(shared.estimate.value().value, once.estimate.value().value);
   EXPECT_EQ(shared.estimate.value().interval.low, once.estimate.value().interval.low);
   EXPECT_EQ(shared.estimate.value().interval.high, once.estimate.value().interval.high);
   EXPECT_EQ(shared.runs, 6U);
