@@ -59,7 +59,7 @@ Verdict decide_waits(const ClaimSpec& claim, const Claim& stated, RunGroup first
   Table entered = entered_with({"cycle", "missing"});
   for (const RunGroup group : {first, second}) {
     for (const FrameRun* run : group) {
-      RunValue cycle = {0, Missing::checkpoint};
+      RunValue cycle = {std::nan(""), Missing::checkpoint};
       for (const CensoredValue& wait : waits_of(claim, RunGroup(&run, 1))) {
         cycle = {wait.value, wait.censored ? Missing::too_short : Missing::nothing};
       }
