@@ -358,21 +358,22 @@ std::string lammps_data(const Particles& all, std::string_view title) {
   const Eigen::Vector3d high =
       all.position.rowwise().maxCoeff().cwiseMax(corners.rowwise().maxCoeff()).array() + all.radius;
   std::string text;
-  const auto out = std::back_inserter(text);
-  fmt::format_to(out, "{}\n\n{} atoms\n5 atom types\n\n", title, all.particles());
-  fmt::format_to(out, "{:.17g} {:.17g} xlo xhi\n{:.17g} {:.17g} ylo yhi\n0 {:.17g} zlo zhi\n",
-                 low.x(), high.x(), low.y(), high.y(), all.edges(2, 2));
+  fmt::format_to(std::back_inserter(text), "{}\n\n{} atoms\n5 atom types\n\n", title,
+                 all.particles());
+  fmt::format_to(std::back_inserter(text),
+                 "{:.17g} {:.17g} xlo xhi\n{:.17g} {:.17g} ylo yhi\n0 {:.17g} zlo zhi\n", low.x(),
+                 high.x(), low.y(), high.y(), all.edges(2, 2));
   text += "\nAtoms # sphere\n\n";
   const double density = all.mass / (4.0 / 3.0 * std::numbers::pi * std::pow(all.radius, 3));
   for (std::size_t i = 0; i < all.particles(); ++i) {
     const auto r = all.position.col(static_cast<Eigen::Index>(i));
-    fmt::format_to(out, "{} {} {:.17g} {:.17g} {:.17g} 0 0 {}\n", i + 1, all.type[i] + 1,
-                   2 * all.radius, density, fmt::join(r, " "), all.image[i]);
+    fmt::format_to(std::back_inserter(text), "{} {} {:.17g} {:.17g} {:.17g} 0 0 {}\n", i + 1,
+                   all.type[i] + 1, 2 * all.radius, density, fmt::join(r, " "), all.image[i]);
   }
   text += "\nVelocities\n\n";
   for (std::size_t i = 0; i < all.particles(); ++i) {
     const auto v = all.velocity.col(static_cast<Eigen::Index>(i));
-    fmt::format_to(out, "{} {:.17g} 0 0 0\n", i + 1, fmt::join(v, " "));
+    fmt::format_to(std::back_inserter(text), "{} {:.17g} 0 0 0\n", i + 1, fmt::join(v, " "));
   }
   return text;
 }
