@@ -64,6 +64,7 @@ struct Content {
   const Store& store;
   const ReportOptions& options;
   Report& report;
+  std::vector<FigureRecord> records = figure_records(store);
   std::vector<Experiment> experiments = {};
   json across = json::array();   ///< figures that use more than one experiment
   json charts = json::object();  ///< by id of the panel
@@ -144,16 +145,16 @@ json panel_json(const Table& table, const std::string& id, const ComputedFigure&
 }
 
 /// The newest record that equals the lineage of `figure`; `made` and `outputs` are not compared.
-std::optional<FigureRecord> recorded_as(const Store& store, const ComputedFigure& figure) {
-  std::optional<FigureRecord> newest;
-  for (FigureRecord& record : figure_records(store)) {
+std::optional<FigureRecord> recorded_as(std::span<const FigureRecord> records,
+                                        const ComputedFigure& figure) {
+  for (const FigureRecord& record : records | std::views::reverse) {
     json facts = record.provenance;
     if (!facts.is_object()) continue;
     facts.erase("made");
     facts["outputs"] = json::object();  // figure.lineage lists no outputs
-    if (facts == figure.lineage) newest = std::move(record);
+    if (facts == figure.lineage) return record;
   }
-  return newest;
+  return {};
 }
 
 json lineage_json(const FigureLineage& lineage, const ComputedFigure& figure, const json& panels,
@@ -236,7 +237,7 @@ json figure_json(const WantedFigure& wanted, const ComputedFigure& figure, Conte
           {"caption", figure.caption},
           {"claims", claims},
           {"warnings", warnings},
-          {"lineage", lineage_json(lineage, figure, panels, recorded_as(content.store, figure))}};
+          {"lineage", lineage_json(lineage, figure, panels, recorded_as(content.records, figure))}};
 }
 
 json stage_json(const RunLineage& stage) {
