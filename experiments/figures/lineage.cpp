@@ -306,9 +306,10 @@ std::optional<PublishedFile> find_published(const Store& store, const std::files
     for (const auto& [output, hash] : files_of(record)) {
       if (hash == sha256) return PublishedFile{sha256, hash, record};
       if (output != name) continue;
-      const bool listed = hash_in_lineage_beside(file, figure_name(record)) == hash;
-      if (listed && !by_lineage) by_lineage = {sha256, hash, record};
       if (!by_name) by_name = {sha256, hash, record};
+      if (!by_lineage && hash_in_lineage_beside(file, figure_name(record)) == hash) {
+        by_lineage = {sha256, hash, record};
+      }
     }
   }
   return by_lineage ? by_lineage : by_name;
