@@ -199,9 +199,9 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
   visit(plot.columns, "y",
         "required; a [measure](#measures), with values at checkpoints or one value for each run "
         "(`onset_size_phi`), or an expression of measures and parameters: "
-        "`stress_xy_Pa/contact_pressure_Pa`. For a measure of the onset, the caption tells how "
-        "many runs end before the onset. A list draws several columns, and so does a map from "
-        "column names to measures: `{phi_u: phi_uncorrected, phi: phi}`",
+        "`stress_xy_Pa/contact_pressure_Pa`. For a measure of the onset, the caption gives the "
+        "number of runs that end before the onset. A list draws several columns, and so does a map "
+        "from column names to measures: `{phi_u: phi_uncorrected, phi: phi}`",
         {.names = can_be_y, .terms = terms, .required = true});
   visit(plot.x, "x",
         "`cycle` (default), a measure, a parameter, or an expression such as `1/period_s`. If `x` "
@@ -214,7 +214,8 @@ void fields(Placed<PlotSpec>& plot, const auto& visit) {
         {.example = "{fluid: [still, cell]}"});
   visit(plot.minus, "minus",
         "swept values that select one variant. The `y` of this variant, for the same packing and "
-        "cycle, is subtracted. The caption tells how many runs have no `y` to subtract",
+        "cycle, is subtracted. The caption gives the number of runs that have no `y` to "
+        "subtract",
         {.example = "{steps_per_cycle: 45600}"});
   visit(plot.by, "by",
         "one curve for each value of this parameter. It is an error if a curve would average over "
